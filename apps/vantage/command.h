@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "vantage/base/options.h"
+#include "vantage/base/result.h"
+#include "vantage/base/run_control.h"
+
+/// The program is a table of commands, one file each. A command declares its flags on a CLI::App and
+/// returns what to do once they are parsed.
+
+namespace vantage::app {
+
+/// Flags that every command has.
+struct CommonFlags {
+  int threads = 0;  ///< 0: all processors; resolved to at least 1 before the command runs
+  bool quiet = false;
+  bool json = false;
+};
+
+using Action = std::function<Status(const CommonFlags& common)>;
+
+struct Command {
+  std::string name;
+  std::string summary;
+  /// Adds the command's flags to `app`; `common` is filled by the time the action runs.
+  std::function<Action(CLI::App& app)> define;
+};
+
+Command BackgroundCommand();
+Command EvaluateCommand();
+Command LinkCommand();
+Command OccupancyCommand();
+Command RenderCommand();
+Command TrackCommand();
+
+/// Adds one flag per field of `options`, "--<prefix><name>" with '_' as '-', with help, unit, rule
+/// and default. Values out of range are usage errors (exit status 2). `options` must outlive `app`.
+void AddOptionFlags(CLI::App& app, const std::function<void(OptionVisitor&)>& visit,
+                    const std::string& prefix, const std::string& group);
+
+template <class Options>
+void AddOptionFlags(CLI::App& app, Options& options, const std::string& prefix,
+                    const std::string& group) {
+  AddOptionFlags(
+      app, [&options](OptionVisitor& visitor) { VisitOptions(options, visitor); }, prefix, group);
+}
+
+/// Progress bar on stderr with rate (units per second) and time left; silent when `quiet`. On a
+/// terminal it redraws a line; otherwise it prints a line every ten seconds. Also carries Ctrl-C.
+RunControl MakeRunControl(const CommonFlags& common, std::string what, std::string unit);
+
+/// Prints a report on stdout: a table of "name  value" rows, or one JSON object with --json.
+struct ReportRow {
+  std::string name;
+  std::string value;
+};
+void PrintTable(const std::vector<ReportRow>& rows);
+
+}  // namespace vantage::app

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vantage/base/ids.h"
+#include "vantage/base/options.h"
+#include "vantage/base/result.h"
+#include "vantage/base/run_control.h"
+
+namespace vantage {
+
+/// Options of the linking stage (algorithms.md section 4; Berclaz et al. 2011).
+struct LinkingOptions {
+  /// Cells that a person may move per frame, Chebyshev distance, 0 <= depth <= 10.
+  int depth = 1;
+  /// A path is added only while it earns more than this, >= 0: the total cost of the optimum counts
+  /// birth_cost for each path.
+  double birth_cost = 45;
+  /// Probabilities are clipped to [clip, 1 - clip], 0 < clip < 0.5, before the cost
+  /// -log(p / (1 - p)).
+  double clip = 1e-6;
+  /// Cost of a move per cell of Euclidean distance, >= 0: among equal paths the straighter one.
+  double movement_cost = 0;
+  /// At most this many paths, >= 0; 0 means any number.
+  int max_paths = 0;
+};
+void VisitOptions(LinkingOptions& options, OptionVisitor& visitor);
+
+/// The layered graph, given by its maps. All spans are row-major, cell = column + row * columns.
+struct LinkingProblem {
+  int columns = 0;
+  int rows = 0;
+  std::int64_t frames = 0;
+  /// frames * columns * rows probabilities in [0, 1].
+  std::span<const float> probability;
+  /// columns * rows; non-zero: people may appear and vanish here at every frame. In the first
+  /// frame every cell is an entrance and in the last every cell is an exit.
+  std::span<const std::uint8_t> access;
+  /// columns * rows, or empty; non-zero: nobody can stand here.
+  std::span<const std::uint8_t> obstacle;
+};
+
+/// One path: a cell for each frame from first_frame on.
+struct LinkedPath {
+  std::int64_t first_frame = 0;
+  std::vector<CellIndex> cells;
+  friend bool operator==(const LinkedPath&, const LinkedPath&) = default;
+};
+
+struct LinkingReport {
+  /// Sum of the paths' costs, birth costs included; the minimum over all sets of disjoint paths.
+  double cost = 0;
+  std::int64_t paths = 0;
+  std::int64_t nodes = 0;
+  double seconds = 0;
+};
+
+struct LinkingResult {
+  /// Node-disjoint; ordered by first frame, then by first cell.
+  std::vector<LinkedPath> paths;
+  LinkingReport report;
+};
+
+/// Finds the set of node-disjoint paths with the smallest total cost: the exact global optimum.
+/// Equal inputs give equal paths on every machine (costs are integers inside, a unit being 2^-20).
+/// Fails on options out of range, sizes that do not fit, and probabilities that are NaN or outside
+/// [0, 1].
+Result<LinkingResult> LinkPaths(const LinkingProblem& problem, const LinkingOptions& options,
+                                const RunControl& control = {});
+
+}  // namespace vantage
