@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -40,15 +41,38 @@ Command OccupancyCommand();
 Command RenderCommand();
 Command TrackCommand();
 
-/// Adds one flag per field of `options`, "--<prefix><name>" with '_' as '-', with help, unit, rule
-/// and default. Values out of range are usage errors (exit status 2). `options` must outlive `app`.
-void AddOptionFlags(CLI::App& app, const std::function<void(OptionVisitor&)>& visit,
-                    const std::string& prefix, const std::string& group);
+/// The flags of one options struct. Flags given on the command line win over what a scene file says, so
+/// a command that reads a scene calls `Apply` again after binding its tables.
+class OptionFlags {
+ public:
+  using Visit = std::function<void(OptionVisitor&)>;
 
+  OptionFlags() = default;
+  OptionFlags(OptionFlags&&) = default;
+  OptionFlags& operator=(OptionFlags&&) = default;
+
+  /// Adds one flag per field, "--<prefix><name>" with '_' as '-', with help, unit, rule and default.
+  /// Values out of range are usage errors (exit status 2).
+  static OptionFlags Add(CLI::App& app, const Visit& visit, const std::string& prefix,
+                         const std::string& group);
+
+  /// Sets the fields whose flags were given.
+  void Apply(const Visit& visit) const;
+
+  template <class Options>
+  void ApplyTo(Options& options) const {
+    Apply([&options](OptionVisitor& visitor) { VisitOptions(options, visitor); });
+  }
+
+ private:
+  std::map<std::string, CLI::Option*, std::less<>> flags_;
+};
+
+/// Flags of `options`, which hold the defaults that the help shows; `ApplyTo` sets what was given.
 template <class Options>
-void AddOptionFlags(CLI::App& app, Options& options, const std::string& prefix,
-                    const std::string& group) {
-  AddOptionFlags(
+OptionFlags AddOptionFlags(CLI::App& app, Options options, const std::string& prefix,
+                           const std::string& group) {
+  return OptionFlags::Add(
       app, [&options](OptionVisitor& visitor) { VisitOptions(options, visitor); }, prefix, group);
 }
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The Vantage authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <memory>
 
 #include "command.h"
 
 namespace vantage::app {
 namespace {
+
+using FlagMap = std::map<std::string, CLI::Option*, std::less<>>;
 
 std::string FlagName(const std::string& prefix, std::string_view name) {
   std::string flag = "--" + prefix + std::string(name);
@@ -21,90 +22,103 @@ std::string Help(const OptionInfo& info, const std::string& rule) {
   return help;
 }
 
-class FlagVisitor final : public OptionVisitor {
+class FlagAdder final : public OptionVisitor {
  public:
-  FlagVisitor(CLI::App& app, std::string prefix, std::string group,
-              std::function<void(OptionVisitor&)> visit)
-      : app_(app), prefix_(std::move(prefix)), group_(std::move(group)), visit_(std::move(visit)) {}
+  FlagAdder(CLI::App& app, std::string prefix, std::string group, FlagMap& flags)
+      : app_(app), prefix_(std::move(prefix)), group_(std::move(group)), flags_(flags) {}
 
   void Flag(const OptionInfo& info, bool& value) override {
     const std::string name = FlagName(prefix_, info.name);
-    app_.add_flag(fmt::format("{},!--no-{}", name, name.substr(2)), value, Help(info, ""))
-        ->capture_default_str()
-        ->group(group_);
+    CLI::Option* option = app_.add_flag(fmt::format("{},!--no-{}", name, name.substr(2)));
+    Keep(info, option, Help(info, ""), value ? "on" : "off");
   }
   void Number(const OptionInfo& info, int& value, const Range& range) override {
-    AddNumber(info, value, range);
+    AddNumber<int>(info, fmt::to_string(value), range);
   }
   void Number(const OptionInfo& info, double& value, const Range& range) override {
-    AddNumber(info, value, range);
+    AddNumber<double>(info, fmt::to_string(value), range);
   }
-
- protected:
-  void ChoiceIndex(const OptionInfo& info, int& index,
-                   const std::vector<std::string_view>& names) override;
-
- private:
-  template <class T>
-  void AddNumber(const OptionInfo& info, T& value, const Range& range) {
-    app_.add_option(FlagName(prefix_, info.name), value, Help(info, range.Text()))
-        ->check(CLI::Validator(
-            [range](std::string& text) -> std::string {
-              double number = 0;
-              if (!CLI::detail::lexical_cast(text, number)) return "not a number: " + text;
-              return range.Contains(number) ? "" : fmt::format("{} must be {}", text, range.Text());
-            },
-            ""))
-        ->capture_default_str()
-        ->group(group_);
-  }
-
-  CLI::App& app_;
-  std::string prefix_, group_;
-  std::function<void(OptionVisitor&)> visit_;
-};
-
-/// Sets one choice by name when its flag is given: the field itself is only reachable by a visit.
-class ChoiceSetter final : public OptionVisitor {
- public:
-  ChoiceSetter(std::string_view name, std::string_view value) : name_(name), value_(value) {}
-  void Flag(const OptionInfo&, bool&) override {}
-  void Number(const OptionInfo&, int&, const Range&) override {}
-  void Number(const OptionInfo&, double&, const Range&) override {}
 
  protected:
   void ChoiceIndex(const OptionInfo& info, int& index,
                    const std::vector<std::string_view>& names) override {
-    if (info.name != name_) return;
-    index = static_cast<int>(std::find(names.begin(), names.end(), value_) - names.begin());
+    const std::vector<std::string> texts(names.begin(), names.end());
+    CLI::Option* option = AddValue(info, "TEXT");
+    option->check(CLI::IsMember(texts));
+    Keep(info, option, Help(info, ""), index >= 0 ? texts[static_cast<std::size_t>(index)] : "");
   }
 
  private:
-  std::string name_, value_;
+  template <class T>
+  void AddNumber(const OptionInfo& info, const std::string& standard, const Range& range) {
+    CLI::Option* option = AddValue(info, "NUMBER");
+    option->check([range](const std::string& text) -> std::string {
+      T number{};
+      if (!CLI::detail::lexical_cast(text, number)) return fmt::format("'{}' is not a number", text);
+      if (range.Contains(static_cast<double>(number))) return "";
+      return fmt::format("is {}; it must be {}", text, range.Text());
+    });
+    Keep(info, option, Help(info, range.Text()), standard);
+  }
+
+  /// An option of one value that CLI11 only keeps: FlagSetter reads it.
+  CLI::Option* AddValue(const OptionInfo& info, const std::string& type) {
+    CLI::Option* option =
+        app_.add_option(FlagName(prefix_, info.name), [](const CLI::results_t&) { return true; });
+    return option->type_name(type)->type_size(1)->expected(1);
+  }
+
+  void Keep(const OptionInfo& info, CLI::Option* option, const std::string& help,
+            const std::string& standard) {
+    option->group(group_)->description(help)->default_str(standard);
+    flags_[std::string(info.name)] = option;
+  }
+
+  CLI::App& app_;
+  std::string prefix_, group_;
+  FlagMap& flags_;
 };
 
-void FlagVisitor::ChoiceIndex(const OptionInfo& info, int& index,
-                              const std::vector<std::string_view>& names) {
-  std::vector<std::string> texts(names.begin(), names.end());
-  const std::string current = index >= 0 ? texts[static_cast<size_t>(index)] : "";
-  app_.add_option_function<std::string>(
-          FlagName(prefix_, info.name),
-          [visit = visit_, name = std::string(info.name)](const std::string& value) {
-            ChoiceSetter setter(name, value);
-            visit(setter);
-          },
-          Help(info, ""))
-      ->check(CLI::IsMember(texts))
-      ->default_str(current)
-      ->group(group_);
-}
+class FlagSetter final : public OptionVisitor {
+ public:
+  explicit FlagSetter(const FlagMap& flags) : flags_(flags) {}
+
+  void Flag(const OptionInfo& info, bool& value) override { Set(info, value); }
+  void Number(const OptionInfo& info, int& value, const Range&) override { Set(info, value); }
+  void Number(const OptionInfo& info, double& value, const Range&) override { Set(info, value); }
+
+ protected:
+  void ChoiceIndex(const OptionInfo& info, int& index,
+                   const std::vector<std::string_view>& names) override {
+    std::string text;
+    Set(info, text);
+    if (!text.empty()) {
+      index = static_cast<int>(std::find(names.begin(), names.end(), text) - names.begin());
+    }
+  }
+
+ private:
+  template <class T>
+  void Set(const OptionInfo& info, T& value) const {
+    const auto flag = flags_.find(info.name);
+    if (flag != flags_.end() && flag->second->count() > 0) value = flag->second->as<T>();
+  }
+  const FlagMap& flags_;
+};
 
 }  // namespace
 
-void AddOptionFlags(CLI::App& app, const std::function<void(OptionVisitor&)>& visit,
-                    const std::string& prefix, const std::string& group) {
-  FlagVisitor visitor(app, prefix, group, visit);
-  visit(visitor);
+OptionFlags OptionFlags::Add(CLI::App& app, const Visit& visit, const std::string& prefix,
+                             const std::string& group) {
+  OptionFlags flags;
+  FlagAdder adder(app, prefix, group, flags.flags_);
+  visit(adder);
+  return flags;
+}
+
+void OptionFlags::Apply(const Visit& visit) const {
+  FlagSetter setter(flags_);
+  visit(setter);
 }
 
 }  // namespace vantage::app
