@@ -11,7 +11,8 @@
 
 namespace vantage {
 
-/// Marginal probabilities of occupancy of a recording: q[frame][cell], cell = column + row * columns.
+/// Marginal probabilities of occupancy of a recording: q[frame][cell], cell = column + row *
+/// columns.
 struct OccupancyMaps {
   GroundGrid grid;
   /// Frame number of the first map; the following maps are of the following frames.

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/occupancy/views.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vantage {
+namespace {
+
+using Eigen::Vector2d;
+
+bool SpeaksFor(const Camera& camera, const Vector2d& foot_m, const PixelBox& box, Visibility rule) {
+  switch (rule) {
+    case Visibility::kGround: {
+      const auto foot_px = camera.ImageFromWorld({foot_m.x(), foot_m.y(), 0});
+      return foot_px && camera.InPicture(*foot_px);
+    }
+    case Visibility::kComplete:
+      return box.min_x >= -0.5 && box.min_y >= -0.5 && box.max_x <= camera.size().width - 0.5 &&
+             box.max_y <= camera.size().height - 0.5;
+    case Visibility::kCentre:
+      return camera.InPicture({(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2});
+  }
+  return false;
+}
+
+/// The pixels of one axis whose centres lie in [low, high], clipped to [0, size).
+std::pair<int, int> PixelRange(double low, double high, int size) {
+  const double first = std::clamp(std::ceil(low), 0.0, static_cast<double>(size));
+  const double end = std::clamp(std::floor(high) + 1, first, static_cast<double>(size));
+  return {static_cast<int>(first), static_cast<int>(end)};
+}
+
+cv::Rect Rectangle(const PixelBox& box, ImageSize size) {
+  const auto [left, right] = PixelRange(box.min_x, box.max_x, size.width);
+  const auto [top, bottom] = PixelRange(box.min_y, box.max_y, size.height);
+  const cv::Rect rectangle(left, top, right - left, bottom - top);
+  return rectangle.empty() ? cv::Rect() : rectangle;
+}
+
+}  // namespace
+
+ImageSize ReducedSize(ImageSize size, int reduction) {
+  const auto side = [reduction](int length) {
+    return std::max(1, static_cast<int>(std::lround(static_cast<double>(length) / reduction)));
+  };
+  return {side(size.width), side(size.height)};
+}
+
+Result<CameraView> BuildView(const Camera& camera, const GroundGrid& grid,
+                             const PersonOptions& person, Visibility rule, int reduction) {
+  if (reduction < 1) return Fail("occupancy.reduction is {}; it must be at least 1", reduction);
+  if (grid.count() < 1) return Fail("the grid has no cells; at least one is needed");
+  CameraView view;
+  view.mask_size = camera.size();
+  view.size = ReducedSize(camera.size(), reduction);
+  VANTAGE_ASSIGN_OR_RETURN(const Camera reduced, camera.Scaled(view.size));
+  view.rectangles.resize(static_cast<std::size_t>(grid.count()));
+  for (CellIndex cell = 0; cell < grid.count(); ++cell) {
+    const Vector2d foot_m = grid.Center(cell);
+    const std::optional<PixelBox> box = PersonBox(reduced, foot_m, person);
+    if (box && SpeaksFor(reduced, foot_m, *box, rule)) {
+      view.rectangles[static_cast<std::size_t>(cell)] = Rectangle(*box, view.size);
+    }
+  }
+  return view;
+}
+
+std::vector<std::uint8_t> VisibleCells(std::span<const CameraView> views) {
+  std::vector<std::uint8_t> visible(views.empty() ? 0 : views.front().rectangles.size(), 0);
+  for (const CameraView& view : views) {
+    for (std::size_t cell = 0; cell < visible.size(); ++cell) {
+      if (!view.rectangles[cell].empty()) visible[cell] = 1;
+    }
+  }
+  return visible;
+}
+
+}  // namespace vantage

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/occupancy/views.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "vantage/base/test_support.h"
+
+namespace vantage {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::MessageOf;
+
+/// 320 x 240, 3 m above (0, -10), looking along +y and slightly down.
+Camera TestCamera() {
+  CameraPose pose;
+  const double tilt = 0.2;
+  Eigen::Matrix3d level;
+  level << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // x right, y down, z along the world's y
+  Eigen::Matrix3d down;
+  down << 1, 0, 0, 0, std::cos(tilt), -std::sin(tilt), 0, std::sin(tilt), std::cos(tilt);
+  pose.rotation = down * level;
+  pose.translation_m = -pose.rotation * Eigen::Vector3d(0, -10, 3);
+  return *Camera::Create(
+      {320, 240}, PinholeModel{.fx_px = 300, .fy_px = 300, .cx_px = 159.5, .cy_px = 119.5}, pose);
+}
+
+GroundGrid Grid(double half_m, double cell_m) {
+  const int cells = static_cast<int>(std::lround(2 * half_m / cell_m));
+  return {-half_m, -half_m, cell_m, cells, cells};
+}
+
+TEST(BuildView, RectangleHoldsThePixelsWhoseCentresThePersonCovers) {
+  const Camera camera = TestCamera();
+  const GroundGrid grid = Grid(4, 0.5);
+  const CameraView view = *BuildView(camera, grid, {}, Visibility::kComplete, 1);
+  ASSERT_EQ(view.rectangles.size(), static_cast<std::size_t>(grid.count()));
+  EXPECT_EQ(view.size, camera.size());
+  int visible = 0;
+  for (CellIndex cell = 0; cell < grid.count(); ++cell) {
+    const cv::Rect& r = view.rectangles[static_cast<std::size_t>(cell)];
+    if (r.empty()) continue;
+    ++visible;
+    const PixelBox box = *PersonBox(camera, grid.Center(cell), {});
+    EXPECT_GE(r.x, box.min_x);
+    EXPECT_LT(r.x - 1, box.min_x);
+    EXPECT_LE(r.x + r.width - 1, box.max_x);
+    EXPECT_GT(r.x + r.width, box.max_x);
+    EXPECT_GE(r.y, box.min_y);
+    EXPECT_LE(r.y + r.height - 1, box.max_y);
+    EXPECT_GT(r.y + r.height, box.max_y);
+  }
+  EXPECT_GT(visible, 200);
+}
+
+TEST(BuildView, RulesDecideWhichCellsAreVisible) {
+  const Camera camera = TestCamera();
+  const GroundGrid grid = Grid(20, 0.5);
+  const PersonOptions person;
+  const CameraView ground = *BuildView(camera, grid, person, Visibility::kGround, 1);
+  const CameraView complete = *BuildView(camera, grid, person, Visibility::kComplete, 1);
+  const CameraView centre = *BuildView(camera, grid, person, Visibility::kCentre, 1);
+  int ground_only = 0, centre_only = 0;
+  for (CellIndex cell = 0; cell < grid.count(); ++cell) {
+    const auto i = static_cast<std::size_t>(cell);
+    const Eigen::Vector2d foot_m = grid.Center(cell);
+    const auto box = PersonBox(camera, foot_m, person);
+    const auto foot_px = camera.ImageFromWorld({foot_m.x(), foot_m.y(), 0});
+    const bool foot_in = foot_px && camera.InPicture(*foot_px);
+    EXPECT_EQ(!ground.rectangles[i].empty(), box && foot_in);
+    EXPECT_EQ(!complete.rectangles[i].empty(), box && camera.InPicture({box->min_x, box->min_y}) &&
+                                                   camera.InPicture({box->max_x, box->max_y}));
+    EXPECT_EQ(
+        !centre.rectangles[i].empty(),
+        box && camera.InPicture({(box->min_x + box->max_x) / 2, (box->min_y + box->max_y) / 2}));
+    if (!complete.rectangles[i].empty()) {
+      EXPECT_EQ(centre.rectangles[i], complete.rectangles[i]);
+    }
+    const cv::Rect picture(0, 0, 320, 240);
+    EXPECT_EQ(centre.rectangles[i] & picture, centre.rectangles[i]);
+    ground_only += !ground.rectangles[i].empty() && centre.rectangles[i].empty();
+    centre_only += !centre.rectangles[i].empty() && ground.rectangles[i].empty();
+  }
+  EXPECT_GT(ground_only + centre_only, 0);
+}
+
+TEST(BuildView, ReductionScalesThePicture) {
+  const Camera camera = TestCamera();
+  const GroundGrid grid = Grid(4, 0.5);
+  const CameraView full = *BuildView(camera, grid, {}, Visibility::kCentre, 1);
+  const CameraView reduced = *BuildView(camera, grid, {}, Visibility::kCentre, 4);
+  EXPECT_EQ(reduced.mask_size, camera.size());
+  EXPECT_EQ(reduced.size, (ImageSize{80, 60}));
+  for (std::size_t i = 0; i < full.rectangles.size(); ++i) {
+    if (full.rectangles[i].empty() || reduced.rectangles[i].empty()) continue;
+    EXPECT_NEAR(full.rectangles[i].x, 4 * reduced.rectangles[i].x, 4);
+    EXPECT_NEAR(full.rectangles[i].height, 4 * reduced.rectangles[i].height, 6);
+  }
+  EXPECT_EQ(ReducedSize({9, 1}, 4), (ImageSize{2, 1}));
+}
+
+TEST(BuildView, RectangleThatRoundsToNothingIsNotVisible) {
+  // A person 5 cm wide, 300 m away, is a sixth of a pixel.
+  const GroundGrid grid{-5, 290, 1, 10, 1};
+  const CameraView view = *BuildView(TestCamera(), grid, {.width_m = 0.05}, Visibility::kCentre, 1);
+  int visible = 0;
+  for (const cv::Rect& r : view.rectangles) {
+    EXPECT_TRUE(r == cv::Rect() || r.width == 1);
+    visible += !r.empty();
+  }
+  EXPECT_LT(visible, 10);
+}
+
+TEST(BuildView, CameraThatLooksAtTheSkySpeaksForNoCell) {
+  CameraPose pose;  // looks up: the camera's axes are the world's
+  pose.translation_m = {0, 0, -1};
+  const Camera camera = *Camera::Create(
+      {64, 64}, PinholeModel{.fx_px = 60, .fy_px = 60, .cx_px = 32, .cy_px = 32}, pose);
+  const CameraView view = *BuildView(camera, Grid(4, 1), {}, Visibility::kCentre, 1);
+  const std::vector<CameraView> views = {view};
+  EXPECT_THAT(VisibleCells(views), ::testing::Each(0));
+}
+
+TEST(BuildView, RefusesNonsense) {
+  EXPECT_THAT(MessageOf(BuildView(TestCamera(), Grid(4, 1), {}, Visibility::kCentre, 0)),
+              HasSubstr("occupancy.reduction is 0"));
+  EXPECT_THAT(MessageOf(BuildView(TestCamera(), {}, {}, Visibility::kCentre, 1)),
+              HasSubstr("no cells"));
+}
+
+TEST(VisibleCells, IsTheUnionOfTheViews) {
+  CameraView a{{4, 4}, {4, 4}, {cv::Rect(0, 0, 1, 1), {}, {}}};
+  CameraView b{{4, 4}, {4, 4}, {{}, cv::Rect(0, 0, 2, 1), {}}};
+  const std::vector<CameraView> views = {a, b};
+  EXPECT_THAT(VisibleCells(views), ::testing::ElementsAre(1, 1, 0));
+}
+
+}  // namespace
+}  // namespace vantage
