@@ -9,8 +9,8 @@
 
 #include "vantage/base/result.h"
 
-/// Frames and units. World: right-handed, metres, z up, the ground is z = 0. Camera: metres, x right,
-/// y down, z forward. Image: pixels, (0, 0) is the centre of the top-left pixel.
+/// Frames and units. World: right-handed, metres, z up, the ground is z = 0. Camera: metres, x
+/// right, y down, z forward. Image: pixels, (0, 0) is the centre of the top-left pixel.
 
 namespace vantage {
 
@@ -54,16 +54,17 @@ struct CameraPose {
 class Camera {
  public:
   /// Fails when a number is not finite, a focal length or pixel size is not positive, the size is
-  /// not 1 to 32768 pixels a side, or the rotation is not orthonormal to 1e-3.
+  /// not 1 to 32768 pixels a side, the rotation is not orthonormal to 1e-3 (it is then replaced by
+  /// the exact rotation nearest to it), or the translation is longer than 10 km.
   static Result<Camera> Create(ImageSize size, const LensModel& lens, const CameraPose& pose);
 
   /// Pixel of a point of the world, inside the picture or not. None when the point is not at least
-  /// 1 mm in front of the camera, or outside the cone where the lens model is one-to-one (a polynomial
-  /// distortion folds points from far outside back into the picture).
+  /// 1 mm in front of the camera, or outside the cone where the lens model is one-to-one (a
+  /// polynomial distortion folds points from far outside back into the picture).
   std::optional<Eigen::Vector2d> ImageFromWorld(const Eigen::Vector3d& world_m) const;
 
-  /// Point at height z_m that this pixel shows. None when the ray does not meet that plane in front of
-  /// the camera (at or above the horizon) or when the lens model has no inverse there.
+  /// Point at height z_m that this pixel shows. None when the ray does not meet that plane in front
+  /// of the camera (at or above the horizon) or when the lens model has no inverse there.
   std::optional<Eigen::Vector3d> WorldFromImage(const Eigen::Vector2d& image_px,
                                                 double z_m = 0) const;
 
@@ -85,7 +86,7 @@ class Camera {
   LensModel lens_;
   CameraPose pose_;
   Eigen::Vector2d scale_ = {1, 1};  // pixels of size_ per pixel of the lens model
-  double max_radius_ = 0;           // largest undistorted radius (at z = 1) that the lens can show
+  double max_radius_ = 0;           // undistorted radius (at z = 1) within which it is one-to-one
 };
 
 }  // namespace vantage

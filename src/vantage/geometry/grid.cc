@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/geometry/grid.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vantage {
@@ -17,15 +18,16 @@ Result<GroundGrid> GroundGrid::Cover(const Polygon& area, double cell_m, double 
     return Fail("grid: the extension is {} m; it must be at least 0 m", extension_m);
   }
   const Eigen::Vector2d side_m = area.max_m() - area.min_m();
-  // A relative slack, so that 20 m in cells of 0.1 m are 200 cells and not 201.
+  // The slack: 20 m in cells of 0.1 m are 200 cells and not 201.
   const auto cells = [&](double length_m) { return std::ceil(length_m / cell_m - 1e-9); };
   const double around = cells(extension_m);
-  const double columns = cells(side_m.x()) + 2 * around;
-  const double rows = cells(side_m.y()) + 2 * around;
+  const double columns = std::max(cells(side_m.x()), 1.0) + 2 * around;
+  const double rows = std::max(cells(side_m.y()), 1.0) + 2 * around;
   if (columns * rows > kMaxCells) {
-    return Fail("grid: {:.0f} x {:.0f} cells of {} m are more than 4 million; use larger cells or a "
-                "smaller area",
-                columns, rows, cell_m);
+    return Fail(
+        "grid: {:.6g} x {:.6g} cells of {} m are more than 4 million; use larger cells or a "
+        "smaller area",
+        columns, rows, cell_m);
   }
   return GroundGrid{.min_x_m = area.min_m().x() - around * cell_m,
                     .min_y_m = area.min_m().y() - around * cell_m,

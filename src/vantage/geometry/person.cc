@@ -23,8 +23,8 @@ std::pair<std::array<Vector2d, 4>, int> Footprint(const Camera& camera, const Ve
   const Vector2d view = foot_m - camera.center_m().head<2>();
   const double length = view.norm();
   // Straight under the camera every direction faces it.
-  const Vector2d across = length > 1e-9 ? Vector2d(-view.y() / length, view.x() / length)
-                                        : Vector2d(1, 0);
+  const Vector2d across =
+      length > 1e-9 ? Vector2d(-view.y() / length, view.x() / length) : Vector2d(1, 0);
   return {{foot_m - half * across, foot_m + half * across}, 2};
 }
 
@@ -43,8 +43,8 @@ std::optional<PixelBox> PersonBox(const Camera& camera, const Vector2d& foot_m,
   std::optional<PixelBox> box;
   for (int i = 0; i < corners; ++i) {
     for (const double z_m : {0.0, person.height_m}) {
-      const auto pixel = camera.ImageFromWorld(Vector3d(base[static_cast<size_t>(i)].x(),
-                                                        base[static_cast<size_t>(i)].y(), z_m));
+      const auto pixel = camera.ImageFromWorld(
+          Vector3d(base[static_cast<size_t>(i)].x(), base[static_cast<size_t>(i)].y(), z_m));
       if (!pixel) return std::nullopt;
       if (!box) box = PixelBox{pixel->x(), pixel->y(), pixel->x(), pixel->y()};
       box->min_x = std::min(box->min_x, pixel->x());
@@ -53,6 +53,8 @@ std::optional<PixelBox> PersonBox(const Camera& camera, const Vector2d& foot_m,
       box->max_y = std::max(box->max_y, pixel->y());
     }
   }
+  // A flat figure seen from straight above is a line.
+  if (!box || !(box->width() > 0 && box->height() > 0)) return std::nullopt;
   return box;
 }
 

@@ -33,8 +33,9 @@ struct PixelBox {
   double height() const { return max_y - min_y; }
 };
 
-/// Bounding rectangle of a person who stands at `foot_m`. None when any part of the figure cannot be
-/// projected (behind the camera, or outside the cone of the lens).
+/// Bounding rectangle of a person who stands at `foot_m`. None when any part of the figure cannot
+/// be projected (behind the camera, or outside the cone of the lens), or when the rectangle has no
+/// extent (a flat figure straight below the camera).
 std::optional<PixelBox> PersonBox(const Camera& camera, const Eigen::Vector2d& foot_m,
                                   const PersonOptions& person);
 

@@ -12,8 +12,8 @@ namespace vantage {
 /// A simple polygon on the ground in metres, in either orientation, not repeated at the end.
 class Polygon {
  public:
-  /// Fails for fewer than 3 corners, corners that are not finite or beyond 10 km, edges that cross,
-  /// or an area under 1 cm^2.
+  /// Fails for fewer than 3 or more than 1000 corners, corners that are not finite or beyond 10 km
+  /// or repeated, edges that cross or touch, or an area under 1 cm^2.
   static Result<Polygon> Create(std::vector<Eigen::Vector2d> corners_m);
   /// The rectangle [min, max]; same failures.
   static Result<Polygon> Rectangle(const Eigen::Vector2d& min_m, const Eigen::Vector2d& max_m);
