@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/linking/linker.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "vantage/base/test_support.h"
+#include "vantage/linking/layered_graph.h"
+
+namespace vantage {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// A corridor of cells in one row, people coming and going at its two ends.
+class Corridor {
+ public:
+  Corridor(int cells, int frames)
+      : cells_(cells),
+        frames_(frames),
+        probability_(static_cast<std::size_t>(cells * frames), 0.01F),
+        access_(static_cast<std::size_t>(cells), 0),
+        obstacle_(static_cast<std::size_t>(cells), 0) {
+    if (cells > 0) access_.front() = access_.back() = 1;
+  }
+  void Set(int frame, int cell, float probability) {
+    probability_[static_cast<std::size_t>(frame * cells_ + cell)] = probability;
+  }
+  void Block(int cell) { obstacle_[static_cast<std::size_t>(cell)] = 1; }
+  void NoAccess() { std::fill(access_.begin(), access_.end(), std::uint8_t{0}); }
+  LinkingProblem problem() const {
+    return {.columns = cells_,
+            .rows = 1,
+            .frames = frames_,
+            .probability = probability_,
+            .access = access_,
+            .obstacle = obstacle_};
+  }
+
+ private:
+  int cells_, frames_;
+  std::vector<float> probability_;
+  std::vector<std::uint8_t> access_, obstacle_;
+};
+
+LinkingResult Link(const LinkingProblem& problem, const LinkingOptions& options) {
+  Result<LinkingResult> result = LinkPaths(problem, options);
+  EXPECT_TRUE(result) << testing::MessageOf(result);
+  return result ? *result : LinkingResult{};
+}
+
+TEST(Linker, FollowsOnePersonThroughAGap) {
+  Corridor corridor(5, 5);
+  for (const int frame : {0, 1, 3, 4}) corridor.Set(frame, frame, 0.99F);
+  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 5});
+  ASSERT_THAT(result.paths, SizeIs(1));
+  EXPECT_EQ(result.paths[0].first_frame, 0);
+  EXPECT_THAT(result.paths[0].cells, ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_NEAR(result.report.cost, 5 - 3 * std::log(99), 1e-4);  // four seen, one missed
+  EXPECT_EQ(result.report.paths, 1);
+  EXPECT_EQ(result.report.nodes, 25);
+}
+
+TEST(Linker, FindsNobodyWherePathsDoNotPay) {
+  Corridor corridor(3, 2);
+  corridor.Set(0, 1, 0.99F);
+  EXPECT_THAT(Link(corridor.problem(), {.birth_cost = 5}).paths, IsEmpty());
+  EXPECT_EQ(Link(corridor.problem(), {.birth_cost = 5}).report.cost, 0);
+}
+
+TEST(Linker, PeopleAppearInTheMiddleOnlyInTheFirstFrame) {
+  Corridor corridor(9, 6);
+  corridor.NoAccess();
+  for (int frame = 2; frame < 4; ++frame) corridor.Set(frame, 4, 0.999F);
+  // Two sightings earn 13.8; two frames before and two after cost 4.6 each.
+  EXPECT_THAT(Link(corridor.problem(), {.birth_cost = 0}).paths, IsEmpty());
+  for (int frame = 0; frame < 2; ++frame) corridor.Set(frame, 4, 0.999F);
+  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 0});
+  ASSERT_THAT(result.paths, SizeIs(1));
+  EXPECT_THAT(result.paths[0].cells, SizeIs(6));
+}
+
+TEST(Linker, CapKeepsTheBestPaths) {
+  Corridor corridor(7, 4);
+  for (int frame = 0; frame < 4; ++frame) {
+    corridor.Set(frame, 1, 0.9F);
+    corridor.Set(frame, 3, 0.99F);
+    corridor.Set(frame, 5, 0.95F);
+  }
+  LinkingOptions options{.depth = 0, .birth_cost = 1};
+  EXPECT_THAT(Link(corridor.problem(), options).paths, SizeIs(3));
+  options.max_paths = 2;
+  const LinkingResult result = Link(corridor.problem(), options);
+  ASSERT_THAT(result.paths, SizeIs(2));
+  EXPECT_THAT(result.paths[0].cells, ElementsAre(3, 3, 3, 3));
+  EXPECT_THAT(result.paths[1].cells, ElementsAre(5, 5, 5, 5));
+}
+
+TEST(Linker, WalksAroundObstacles) {
+  Corridor corridor(3, 3);
+  for (int frame = 0; frame < 3; ++frame) corridor.Set(frame, frame, 0.999F);
+  EXPECT_THAT(Link(corridor.problem(), {.birth_cost = 1}).paths, SizeIs(1));
+  corridor.Block(1);
+  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 1});
+  for (const LinkedPath& path : result.paths) {
+    EXPECT_THAT(path.cells, ::testing::Not(::testing::Contains(1)));
+  }
+}
+
+TEST(Linker, MovementCostStraightensTies) {
+  // Everything is equally likely: only the movement cost decides.
+  Corridor corridor(4, 6);
+  for (int frame = 0; frame < 6; ++frame) {
+    for (int cell = 0; cell < 4; ++cell) corridor.Set(frame, cell, 0.9F);
+  }
+  const LinkingResult result =
+      Link(corridor.problem(), {.depth = 2, .birth_cost = 1, .movement_cost = 0.1});
+  ASSERT_THAT(result.paths, SizeIs(4));
+  for (const LinkedPath& path : result.paths) {
+    EXPECT_THAT(path.cells, ::testing::Each(path.cells.front()));
+  }
+}
+
+TEST(Linker, SmallestSizes) {
+  EXPECT_THAT(Link(Corridor(3, 0).problem(), {}).paths, IsEmpty());
+  Corridor one(1, 1);
+  EXPECT_THAT(Link(one.problem(), {.birth_cost = 1}).paths, IsEmpty());
+  one.Set(0, 0, 1.0F);
+  const LinkingResult result = Link(one.problem(), {.birth_cost = 1});
+  ASSERT_THAT(result.paths, SizeIs(1));
+  EXPECT_THAT(result.paths[0].cells, ElementsAre(0));
+  EXPECT_NEAR(result.report.cost, 1 - std::log((1 - 1e-6) / 1e-6), 1e-6);
+}
+
+TEST(Linker, CostsAreClippedOnBothSides) {
+  using linking::NodeCost;
+  const double largest = std::log((1 - 1e-6) / 1e-6);
+  EXPECT_EQ(NodeCost(0.0, 1e-6), linking::ToUnits(largest));
+  EXPECT_EQ(NodeCost(1.0, 1e-6), -linking::ToUnits(largest));
+  EXPECT_EQ(NodeCost(1e-7, 1e-6), linking::ToUnits(largest));
+  EXPECT_EQ(NodeCost(0.5, 1e-6), 0);
+  EXPECT_EQ(NodeCost(0.9, 1e-6), linking::ToUnits(-std::log(9.0)));
+  // 1 - clip rounds to 1 here; the cost must stay finite.
+  EXPECT_EQ(NodeCost(1.0, 1e-300), -NodeCost(0.0, 1e-300));
+  EXPECT_NEAR(NodeCost(0.0, 1e-300) / linking::kUnitsPerCost, 300 * std::log(10.0), 1e-5);
+}
+
+TEST(Linker, RefusesWhatIsNotAProblem) {
+  const auto message = [](const LinkingProblem& problem, const LinkingOptions& options) {
+    return testing::MessageOf(LinkPaths(problem, options));
+  };
+  Corridor corridor(3, 2);
+  EXPECT_THAT(message(corridor.problem(), {.depth = -1}), HasSubstr("linking.depth is -1"));
+  EXPECT_THAT(message(corridor.problem(), {.clip = 0.5}), HasSubstr("linking.clip is 0.5"));
+  EXPECT_THAT(message(corridor.problem(), {.birth_cost = -1}), HasSubstr("linking.birth_cost"));
+
+  LinkingProblem wrong = corridor.problem();
+  wrong.frames = 3;
+  EXPECT_THAT(message(wrong, {}), HasSubstr("probability has 6 values; it must have 9"));
+  wrong = corridor.problem();
+  wrong.access = {};
+  EXPECT_THAT(message(wrong, {}), HasSubstr("access has 0 values; it must have 3"));
+  wrong = corridor.problem();
+  wrong.columns = 0;
+  EXPECT_THAT(message(wrong, {}), HasSubstr("at least 1 x 1"));
+  wrong.columns = wrong.rows = std::numeric_limits<int>::max();
+  wrong.frames = std::numeric_limits<std::int64_t>::max();
+  EXPECT_THAT(message(wrong, {}), HasSubstr("more than 2^27 nodes"));
+
+  corridor.Set(1, 2, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_THAT(message(corridor.problem(), {}), HasSubstr("cell 2 in frame 1 is nan"));
+  corridor.Set(1, 2, 1.5F);
+  EXPECT_THAT(message(corridor.problem(), {}), HasSubstr("cell 2 in frame 1 is 1.5"));
+}
+
+TEST(Linker, StopsWhenAsked) {
+  Corridor corridor(3, 3);
+  corridor.Set(0, 1, 1.0F);
+  const std::atomic<bool> stop{true};
+  RunControl control;
+  control.stop = &stop;
+  EXPECT_THAT(testing::MessageOf(LinkPaths(corridor.problem(), {}, control)),
+              HasSubstr("interrupted"));
+}
+
+TEST(Linker, ReportsProgressUpToTheEnd) {
+  Corridor corridor(3, 4);
+  corridor.Set(0, 1, 1.0F);
+  std::int64_t last = -1;
+  RunControl control;
+  control.progress = [&](std::int64_t done, std::int64_t total) {
+    EXPECT_LE(last, done);
+    EXPECT_LE(done, total);
+    last = done == total ? total : done;
+  };
+  ASSERT_TRUE(LinkPaths(corridor.problem(), {}, control));
+  EXPECT_EQ(last, 8);
+}
+
+}  // namespace
+}  // namespace vantage
