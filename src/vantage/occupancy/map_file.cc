@@ -111,12 +111,20 @@ bool WriteAttribute(hid_t object, const char* name, hid_t type, T value) {
   return attribute.valid() && H5Awrite(attribute.get(), type, &value) >= 0;
 }
 
+/// Properties of a new dataset without the time of its making: equal maps give equal bytes.
+Properties DatasetProperties() {
+  Properties properties(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_obj_track_times(properties.get(), false);
+  return properties;
+}
+
 bool WriteFlags(hid_t file, const char* name, const GroundGrid& grid,
                 const std::vector<std::uint8_t>& flags) {
   const std::array size = {static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)};
   const Space space(H5Screate_simple(2, size.data(), nullptr));
-  const Dataset dataset(
-      H5Dcreate2(file, name, H5T_STD_U8LE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  const Properties properties = DatasetProperties();
+  const Dataset dataset(H5Dcreate2(file, name, H5T_STD_U8LE, space.get(), H5P_DEFAULT,
+                                   properties.get(), H5P_DEFAULT));
   return dataset.valid() && H5Dwrite(dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                                      flags.data()) >= 0;
 }
@@ -130,7 +138,7 @@ bool WriteContent(const fs::path& path, const OccupancyMaps& maps) {
   const std::array max_size = {static_cast<hsize_t>(H5S_UNLIMITED), rows, columns};
   const std::array chunk = {hsize_t{1}, rows, columns};
   const Space space(H5Screate_simple(3, size.data(), max_size.data()));
-  const Properties layout(H5Pcreate(H5P_DATASET_CREATE));
+  const Properties layout = DatasetProperties();
   if (H5Pset_chunk(layout.get(), 3, chunk.data()) < 0 || H5Pset_shuffle(layout.get()) < 0 ||
       H5Pset_deflate(layout.get(), kDeflateLevel) < 0) {
     return false;
