@@ -6,7 +6,6 @@
 #include <array>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 
 #include "vantage/base/file.h"
 
@@ -24,24 +23,38 @@ std::int64_t Big(std::string_view bytes, std::size_t at, std::size_t length) {
   for (std::size_t i = 0; i < length; ++i) value = value << 8 | Byte(bytes, at + i);
   return value;
 }
+bool IsSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 std::int64_t Little32(std::string_view bytes, std::size_t at) {
   const std::uint32_t value = Byte(bytes, at) | Byte(bytes, at + 1) << 8 |
                               Byte(bytes, at + 2) << 16 | Byte(bytes, at + 3) << 24;
   return static_cast<std::int32_t>(value);
 }
 
-struct Declared {
+/// What a header declares, and whether the file goes on to its end. Asked for here because OpenCV
+/// fills what a truncated JPEG lacks with grey and reports success, and because the decoders print.
+struct Header {
   std::int64_t width = 0;
   std::int64_t height = 0;
+  bool complete = false;
 };
 
-/// Walks the segments of a JPEG to its frame header. OpenCV fills what a truncated JPEG lacks with
-/// grey and reports success, so the end marker is asked for here.
-std::optional<Declared> JpegHeader(std::string_view bytes, bool& complete) {
-  std::optional<Declared> declared;
-  std::size_t at = 2;
-  while (at + 4 <= bytes.size()) {
-    if (Byte(bytes, at) != 0xff) return std::nullopt;
+Header PngHeader(std::string_view bytes) {
+  Header header;
+  if (bytes.substr(12, 4) == "IHDR") {
+    header.width = Big(bytes, 16, 4);
+    header.height = Big(bytes, 20, 4);
+  }
+  // Chunks of length, name, data, checksum, up to IEND.
+  for (std::size_t at = 8; at + 12 <= bytes.size() && !header.complete;) {
+    header.complete = bytes.substr(at + 4, 4) == "IEND";
+    at += 12 + static_cast<std::size_t>(Big(bytes, at, 4));
+  }
+  return header;
+}
+
+Header JpegHeader(std::string_view bytes) {
+  Header header;
+  for (std::size_t at = 2; at + 4 <= bytes.size() && Byte(bytes, at) == 0xff;) {
     const unsigned marker = Byte(bytes, at + 1);
     if (marker == 0xff) {  // padding
       ++at;
@@ -50,56 +63,71 @@ std::optional<Declared> JpegHeader(std::string_view bytes, bool& complete) {
     const auto length = static_cast<std::size_t>(Big(bytes, at + 2, 2));
     const bool frame =
         marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-    if (frame) declared = Declared{Big(bytes, at + 7, 2), Big(bytes, at + 5, 2)};
-    if (marker == 0xda) {  // scan: 0xff of its data is always followed by 0
-      complete = bytes.find("\xff\xd9", at + 2 + length) != std::string_view::npos;
-      return declared;
+    if (frame) {
+      header.width = Big(bytes, at + 7, 2);
+      header.height = Big(bytes, at + 5, 2);
+    }
+    if (marker == 0xda) {  // scan: 0xff within its data is always followed by 0
+      header.complete = bytes.find("\xff\xd9", at + 2 + length) != std::string_view::npos;
+      return header;
     }
     at += 2 + length;
   }
-  return declared;
+  return header;
 }
 
-std::optional<Declared> PnmHeader(std::string_view bytes) {
-  std::array<std::int64_t, 2> numbers = {};
+Header BmpHeader(std::string_view bytes) {
+  const auto file_bytes = static_cast<std::uint32_t>(Little32(bytes, 2));
+  return {.width = Little32(bytes, 18),
+          .height = std::abs(Little32(bytes, 22)),
+          .complete = bytes.size() >= file_bytes};
+}
+
+/// PGM and PPM (P2, P3 text; P5, P6 binary): width, height, largest value, then the pixels.
+Header PnmHeader(std::string_view bytes) {
+  std::array<std::int64_t, 3> numbers = {};
   std::size_t at = 2;
   for (std::int64_t& number : numbers) {
-    while (at < bytes.size() &&
-           (std::isspace(static_cast<unsigned char>(bytes[at])) || bytes[at] == '#')) {
-      if (bytes[at] == '#')
-        at = std::min(bytes.find('\n', at), bytes.size());
-      else
-        ++at;
+    while (at < bytes.size() && (IsSpace(bytes[at]) || bytes[at] == '#')) {
+      at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
     }
     const std::size_t start = at;
-    while (at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9' && at - start < 10) {
+    while (at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9' && at - start < 9) {
       number = number * 10 + (bytes[at++] - '0');
     }
-    if (at == start) return std::nullopt;
   }
-  return Declared{numbers[0], numbers[1]};
+  const auto [width, height, largest] = numbers;
+  const bool binary = bytes[1] >= '5';
+  const std::int64_t channels = bytes[1] == '3' || bytes[1] == '6' ? 3 : 1;
+  const std::int64_t pixel_bytes = binary ? channels * (largest > 255 ? 2 : 1) : 2 * channels;
+  const std::int64_t needed = static_cast<std::int64_t>(at) + width * height * pixel_bytes;
+  return {.width = width,
+          .height = height,
+          .complete = largest > 0 && static_cast<std::int64_t>(bytes.size()) >= needed};
 }
 
 Result<ImageSize> CheckHeader(const std::string& name, std::string_view bytes) {
-  std::optional<Declared> declared;
-  bool complete = true;
   if (bytes.empty()) return Fail("{}: is empty; a picture is needed", name);
+  Header header;
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) {
-    if (bytes.substr(12).starts_with("IHDR"))
-      declared = Declared{Big(bytes, 16, 4), Big(bytes, 20, 4)};
+    header = PngHeader(bytes);
   } else if (bytes.starts_with("\xff\xd8")) {
-    complete = false;
-    declared = JpegHeader(bytes, complete);
+    header = JpegHeader(bytes);
   } else if (bytes.starts_with("BM")) {
-    declared = Declared{Little32(bytes, 18), std::abs(Little32(bytes, 22))};
-  } else if (bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '2' && bytes[1] <= '6') {
-    declared = PnmHeader(bytes);
+    header = BmpHeader(bytes);
+  } else if (bytes.starts_with("P2") || bytes.starts_with("P3") || bytes.starts_with("P5") ||
+             bytes.starts_with("P6")) {
+    header = PnmHeader(bytes);
   } else {
     return Fail("{}: is not a picture that can be read; PNG, JPEG, BMP, PGM and PPM can", name);
   }
-  if (!declared || !complete) return Fail("{}: the picture is damaged or cut short", name);
-  VANTAGE_RETURN_IF_ERROR(CheckPictureSize(name, declared->width, declared->height));
-  return ImageSize{static_cast<int>(declared->width), static_cast<int>(declared->height)};
+  if (header.width != 0 || header.height != 0) {
+    VANTAGE_RETURN_IF_ERROR(CheckPictureSize(name, header.width, header.height));
+  }
+  if (!header.complete || header.width == 0) {
+    return Fail("{}: the picture is damaged or cut short", name);
+  }
+  return ImageSize{static_cast<int>(header.width), static_cast<int>(header.height)};
 }
 
 }  // namespace

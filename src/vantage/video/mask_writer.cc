@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/video/mask_writer.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <vector>
+
+namespace vantage {
+
+Status WriteMask(const std::filesystem::path& folder, FrameIndex frame, const cv::Mat& mask) {
+  const std::string name = (folder / fmt::format("{:06}.png", frame)).string();
+  if (frame < 0) return Fail("{}: the frame is {}; it must be at least 0", name, frame);
+  if (mask.type() != CV_8UC1 || mask.empty()) {
+    return Fail("{}: the picture is not a mask (one channel of 8 bits)", name);
+  }
+  // Encoded in memory first: cv::imwrite does not notice that the last block found no room.
+  std::vector<unsigned char> bytes;
+  try {
+    if (!cv::imencode(".png", mask, bytes)) return Fail("{}: cannot be encoded as PNG", name);
+  } catch (const cv::Exception& error) {
+    return Fail("{}: cannot be encoded as PNG: {}", name, error.err);
+  }
+  std::ofstream stream(name, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  stream.flush();
+  if (!stream) return Fail("{}: cannot be written: {}", name, std::strerror(errno));
+  return {};
+}
+
+}  // namespace vantage
