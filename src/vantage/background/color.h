@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+namespace vantage {
+
+/// Rows of pixels between 8-bit BGR (sRGB) and the colour spaces of the background model, three
+/// floats a pixel. Plain arithmetic and tables, so that every machine gives the same bits.
+
+/// CIE 1976 L*u*v* with the white point D65: L* in [0, 100], u* in about [-84, 176], v* in about
+/// [-135, 108]; within 0.01 of the exact formulas.
+void LuvFromBgr(const std::uint8_t* bgr, float* luv, int pixels);
+/// The nearest 8-bit BGR; colours outside sRGB are clipped.
+void BgrFromLuv(const float* luv, std::uint8_t* bgr, int pixels);
+
+/// 8-bit levels as floats and back, rounded; the channels stay in the order blue, green, red.
+void FloatFromBgr(const std::uint8_t* bgr, float* levels, int pixels);
+void BgrFromFloat(const float* levels, std::uint8_t* bgr, int pixels);
+
+}  // namespace vantage
