@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/background/subtractor.h"
+
+#include <chrono>
+#include <opencv2/core.hpp>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+/// Adds the time since the last call to one of the report's sums.
+class Stopwatch {
+ public:
+  void AddTo(double& sum_secs) {
+    const auto now = std::chrono::steady_clock::now();
+    sum_secs += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void VisitOptions(BackgroundOptions& options, OptionVisitor& visitor) {
+  VisitOptions(options.mixture, visitor);
+  VisitOptions(options.ghosts, visitor);
+  VisitOptions(options.cleanup, visitor);
+}
+
+Status Validate(const BackgroundOptions& options) {
+  VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "background"));
+  return Validate(options.mixture);
+}
+
+Result<BackgroundSubtractor> BackgroundSubtractor::Create(ImageSize size,
+                                                          const BackgroundOptions& options) {
+  VANTAGE_RETURN_IF_ERROR(Validate(options));
+  VANTAGE_ASSIGN_OR_RETURN(MixtureModel model, MixtureModel::Create(size, options.mixture));
+  return BackgroundSubtractor(std::move(model), options);
+}
+
+Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int threads) {
+  Stopwatch watch;
+  const cv::Mat frame = bgr;  // `mask` may be the same object
+  VANTAGE_RETURN_IF_ERROR(model_.Apply(frame, mask, threads));
+  watch.AddTo(report_.mixture_secs);
+
+  const auto background = [this](const cv::Rect& region) { return model_.BackgroundImage(region); };
+  VANTAGE_ASSIGN_OR_RETURN(const std::vector<JudgedComponent> judged,
+                           JudgeComponents(frame, mask, background, options_.ghosts));
+  bool any_ghost = false;
+  for (const JudgedComponent& one : judged) {
+    if (!one.ghost) continue;
+    any_ghost = true;
+    ++report_.ghosts;
+    report_.ghosts_px += one.component.area_px;
+  }
+  if (any_ghost) {
+    const cv::Mat ghosts = GhostMask(judged, mask.size());
+    VANTAGE_RETURN_IF_ERROR(model_.Absorb(ghosts));
+    mask.setTo(0, ghosts);
+  }
+  watch.AddTo(report_.ghost_secs);
+
+  VANTAGE_RETURN_IF_ERROR(CleanMask(mask, options_.cleanup));
+  watch.AddTo(report_.cleanup_secs);
+  ++report_.frames;
+  return {};
+}
+
+}  // namespace vantage
