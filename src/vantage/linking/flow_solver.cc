@@ -10,12 +10,14 @@ namespace vantage::linking {
 namespace {
 
 constexpr Cost kUnreached = std::numeric_limits<Cost>::max();
+constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kExpansionsBetweenStopChecks = 1 << 14;
 
 }  // namespace
 
-FlowSolver::FlowSolver(const LayeredGraph& graph)
+FlowSolver::FlowSolver(const LayeredGraph& graph, const Effort& effort)
     : graph_(graph),
+      effort_(effort),
       link_(std::size_t{2} * graph.node_count(), kUnused),
       potential_(std::size_t{2} * graph.node_count(), 0),
       label_(std::size_t{2} * graph.node_count(), Label{kUnreached, kEdge}) {
@@ -27,25 +29,40 @@ FlowSolver::FlowSolver(const LayeredGraph& graph)
 }
 
 bool FlowSolver::Solve(const RunControl& control) {
-  const std::int64_t steps = 2 * graph_.frames;
+  return SettleAll<kOut>(control) && SettleAll<kIn>(control);
+}
+
+template <FlowSolver::Side kNear>
+bool FlowSolver::SettleAll(const RunControl& control) {
+  const std::int64_t frames_before = kNear == kOut ? 0 : graph_.frames;
+  std::vector<Vertex> waiting;
   for (Node node = 0; node < graph_.node_count(); ++node) {
-    if (node % graph_.cells == 0) control.Report(node / graph_.cells, steps);
-    if (link_[At(node, kOut)] != kOpen) continue;
-    const QueueEntry start(0, At(node, kOut));
-    if (!Search<kOut>(std::span(&start, 1), control)) return false;
+    if (node % graph_.cells == 0) {
+      control.Report(frames_before + node / graph_.cells, 2 * graph_.frames);
+    }
+    const QueueEntry start(0, At(node, kNear));
+    if (link_[start.second] != kOpen) continue;
+    const Outcome outcome = Search<kNear>(std::span(&start, 1), effort_.nearby, control);
+    if (outcome == Outcome::kStopped) return false;
+    if (outcome == Outcome::kGaveUp) waiting.push_back(start.second);
   }
-  for (Node node = 0; node < graph_.node_count(); ++node) {
-    if (node % graph_.cells == 0) control.Report(graph_.frames + node / graph_.cells, steps);
-    if (link_[At(node, kIn)] != kOpen) continue;
-    const QueueEntry start(0, At(node, kIn));
-    if (!Search<kIn>(std::span(&start, 1), control)) return false;
+  expansions_ = 0;
+  const auto between_sweeps =
+      static_cast<std::int64_t>(effort_.share_between_sweeps * graph_.node_count());
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    if (expansions_ >= between_sweeps &&
+        !Spread<Other(kNear)>(std::ssize(waiting) - static_cast<std::int64_t>(i), control)) {
+      return false;
+    }
+    const QueueEntry start(0, waiting[i]);
+    if (Search<kNear>(std::span(&start, 1), kUnlimited, control) == Outcome::kStopped) return false;
   }
-  control.Report(steps, steps);
+  control.Report(frames_before + graph_.frames, 2 * graph_.frames);
   return true;
 }
 
 bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
-  edge_is_target_ = false;
+  targets_ = Targets::kBeginnings;
   std::vector<Vertex> ends;
   for (Node node = 0; node < graph_.node_count(); ++node) {
     if (link_[At(node, kOut)] == kToEdge) ends.push_back(At(node, kOut));
@@ -56,8 +73,8 @@ bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
     for (const Vertex end : ends) {
       starts.emplace_back(edge_potential_[kOut] - graph_.exit_cost - potential_[end], end);
     }
-    if (!Search<kOut>(starts, control)) return false;
-    // The search began at the edge's end of paths, at distance 0 (see FinishSearch).
+    if (Search<kOut>(starts, kUnlimited, control) == Outcome::kStopped) return false;
+    // The search began at the edge's end of paths, at distance 0 (see UpdatePotentials).
     edge_potential_[kOut] -= target_distance_;
     // Only the path's first vertex has stopped being an end.
     std::erase_if(ends, [&](Vertex end) { return link_[end] != kToEdge; });
@@ -70,7 +87,8 @@ bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
 // nearer than the best target so far need no label: neither the path nor the new potentials depend
 // on them.
 template <FlowSolver::Side kNear>
-bool FlowSolver::Search(std::span<const QueueEntry> starts, const RunControl& control) {
+FlowSolver::Outcome FlowSolver::Search(std::span<const QueueEntry> starts,
+                                       std::int64_t most_expansions, const RunControl& control) {
   target_distance_ = kUnreached;
   for (const auto& [distance, vertex] : starts) {
     label_[vertex] = {distance, kEdge};
@@ -78,18 +96,79 @@ bool FlowSolver::Search(std::span<const QueueEntry> starts, const RunControl& co
   }
   queue_.assign(starts.begin(), starts.end());
   std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
-  for (std::int64_t expansions = 1; !queue_.empty(); ++expansions) {
-    const auto [distance, vertex] = queue_.front();
-    if (distance >= target_distance_) break;
-    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
-    queue_.pop_back();
+  std::int64_t expansions = 0;
+  while (!queue_.empty() && queue_.front().first < target_distance_) {
+    if (expansions == most_expansions) {
+      ForgetLabels();
+      return Outcome::kGaveUp;
+    }
+    const auto [distance, vertex] = PopNearest();
     if (distance > label_[vertex].distance) continue;  // a nearer way was found meanwhile
+    Expand<kNear>(vertex, distance);
+    if (++expansions % kExpansionsBetweenStopChecks == 0 && control.Stopped()) {
+      return Outcome::kStopped;
+    }
+  }
+  if (control.Stopped()) return Outcome::kStopped;
+  expansions_ += expansions;
+  PushFlowAlong(PathToTarget(), kNear);
+  UpdatePotentials<kNear>();
+  return Outcome::kFound;
+}
+
+template <FlowSolver::Side kNear>
+bool FlowSolver::Spread(std::int64_t imbalances, const RunControl& control) {
+  constexpr Side kFar = Other(kNear);
+  targets_ = Targets::kNone;
+  target_distance_ = kUnreached;
+  StartSpread<kNear>();
+  std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
+  for (std::int64_t expansions = 1; imbalances > 0; ++expansions) {
+    const auto [distance, vertex] = PopNearest();
+    if (distance > label_[vertex].distance) continue;
+    if (SideOf(vertex) == kFar && link_[vertex] == kOpen && --imbalances == 0) {
+      target_distance_ = distance;
+      break;
+    }
     Expand<kNear>(vertex, distance);
     if (expansions % kExpansionsBetweenStopChecks == 0 && control.Stopped()) return false;
   }
-  if (control.Stopped()) return false;
-  FinishSearch<kNear>();
+  // The edge itself is at distance 0.
+  const Cost edge_change = Mirror<kNear>(-target_distance_);
+  edge_potential_[kIn] += edge_change;
+  edge_potential_[kOut] += edge_change;
+  UpdatePotentials<kNear>();
+  targets_ = Targets::kImbalances;
+  expansions_ = 0;
   return true;
+}
+
+template <FlowSolver::Side kNear>
+void FlowSolver::StartSpread() {
+  constexpr Side kFar = Other(kNear);
+  const Cost far_edge_cost = kFar == kOut ? graph_.exit_cost : graph_.entry_cost;
+  const Cost near_edge_cost = kNear == kOut ? graph_.exit_cost : graph_.entry_cost;
+  const Cost edge = Mirror<kNear>(edge_potential_[kNear]);
+  queue_.clear();
+  const auto start = [&](Vertex vertex, Cost distance) {
+    label_[vertex] = {distance, kEdge};
+    reached_.push_back(vertex);
+    queue_.emplace_back(distance, vertex);
+  };
+  for (Node node = 0; node < graph_.node_count(); ++node) {
+    const Vertex near = At(node, kNear);
+    const Vertex far = At(node, kFar);
+    if (link_[near] == kBlocked) continue;
+    if (link_[near] == kOpen) {
+      start(near, 0);
+    } else if (link_[near] == kToEdge) {
+      start(near, edge - near_edge_cost - Mirror<kNear>(potential_[near]));
+    }
+    const bool at_edge = kFar == kOut ? graph_.IsExit(node) : graph_.IsEntrance(node);
+    if (at_edge && link_[far] != kToEdge) {
+      start(far, edge + far_edge_cost - Mirror<kNear>(potential_[far]));
+    }
+  }
 }
 
 template <FlowSolver::Side kNear>
@@ -101,7 +180,7 @@ void FlowSolver::Expand(Vertex vertex, Cost distance) {
   if (SideOf(vertex) == kNear) {
     if (Carries(node)) Relax<kNear>(other_side, base - graph_.node_cost[node], vertex);
     const bool at_edge = kNear == kOut ? graph_.IsExit(node) : graph_.IsEntrance(node);
-    if (edge_is_target_ && at_edge && link_[vertex] != kToEdge) {
+    if (targets_ == Targets::kImbalances && at_edge && link_[vertex] != kToEdge) {
       const Cost edge_cost = kNear == kOut ? graph_.exit_cost : graph_.entry_cost;
       OfferTarget(kEdge, base + edge_cost - Mirror<kNear>(edge_potential_[kNear]), vertex);
     }
@@ -109,9 +188,10 @@ void FlowSolver::Expand(Vertex vertex, Cost distance) {
   } else if (!Carries(node)) {
     Relax<kNear>(other_side, base + graph_.node_cost[node], vertex);
   } else if (link_[vertex] == kToEdge) {
+    if (targets_ == Targets::kNone) return;
     const Cost edge_cost = kFar == kOut ? graph_.exit_cost : graph_.entry_cost;
     OfferTarget(kEdge, base - edge_cost - Mirror<kNear>(edge_potential_[kFar]), vertex);
-  } else {
+  } else if (link_[vertex] != kOpen) {
     const Move& move = graph_.moves[static_cast<std::size_t>(link_[vertex])];
     Relax<kNear>(At(Follow(node, kFar), kNear), base - move.cost, vertex);
   }
@@ -144,7 +224,7 @@ template <FlowSolver::Side kNear>
 void FlowSolver::Relax(Vertex to, Cost distance, Vertex from) {
   distance -= Mirror<kNear>(potential_[to]);
   if (distance >= target_distance_) return;
-  if (SideOf(to) != kNear && link_[to] == kOpen) {
+  if (targets_ != Targets::kNone && SideOf(to) != kNear && link_[to] == kOpen) {
     OfferTarget(to, distance, from);
     return;
   }
@@ -162,22 +242,36 @@ void FlowSolver::OfferTarget(Vertex target, Cost distance, Vertex from) {
   target_arc_ = {from, target};
 }
 
+FlowSolver::QueueEntry FlowSolver::PopNearest() {
+  std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
+  const QueueEntry nearest = queue_.back();
+  queue_.pop_back();
+  return nearest;
+}
+
 // New potentials, shifted so that only vertices nearer than the target change: y + min(d, D) - D
 // instead of y + min(d, D). Only differences count, and so a local search stays local.
 template <FlowSolver::Side kNear>
-void FlowSolver::FinishSearch() {
-  std::vector<Arc> arcs = {target_arc_};
-  for (Vertex vertex = target_arc_.first; vertex != kEdge; vertex = label_[vertex].parent) {
-    arcs.emplace_back(label_[vertex].parent, vertex);
-  }
-  PushFlowAlong(arcs, kNear);
+void FlowSolver::UpdatePotentials() {
   for (const Vertex vertex : reached_) {
     if (label_[vertex].distance < target_distance_) {
       potential_[vertex] += Mirror<kNear>(label_[vertex].distance - target_distance_);
     }
-    label_[vertex] = {kUnreached, kEdge};
   }
+  ForgetLabels();
+}
+
+void FlowSolver::ForgetLabels() {
+  for (const Vertex vertex : reached_) label_[vertex] = {kUnreached, kEdge};
   reached_.clear();
+}
+
+std::vector<FlowSolver::Arc> FlowSolver::PathToTarget() const {
+  std::vector<Arc> arcs = {target_arc_};
+  for (Vertex vertex = target_arc_.first; vertex != kEdge; vertex = label_[vertex].parent) {
+    arcs.emplace_back(label_[vertex].parent, vertex);
+  }
+  return arcs;
 }
 
 void FlowSolver::PushFlowAlong(const std::vector<Arc>& arcs, Side near) {

@@ -45,7 +45,16 @@ namespace vantage::linking {
 /// seen cost much; whole tracks are never searched.
 class FlowSolver {
  public:
-  explicit FlowSolver(const LayeredGraph& graph);
+  /// Changes the time taken, never the optimum. In expansions of vertices.
+  struct Effort {
+    /// A target that takes more than this to find is far.
+    std::int64_t nearby = 5000;
+    /// Searches for far targets cost this much, as a share of the nodes, between sweeps.
+    double share_between_sweeps = 0.5;
+  };
+
+  explicit FlowSolver(const LayeredGraph& graph) : FlowSolver(graph, Effort{}) {}
+  FlowSolver(const LayeredGraph& graph, const Effort& effort);
 
   /// Finds the minimum-cost flow. False when stopped by the caller.
   bool Solve(const RunControl& control);
@@ -92,8 +101,21 @@ class FlowSolver {
   /// Time runs forward in a search from an excess (kNear = kOut) and backward in one from a lack
   /// (kNear = kIn); the network is its own mirror image with in and out, begin and end exchanged
   /// and potentials negated.
+  enum class Outcome { kFound, kGaveUp, kStopped };
   template <Side kNear>
-  bool Search(std::span<const QueueEntry> starts, const RunControl& control);
+  Outcome Search(std::span<const QueueEntry> starts, std::int64_t most_expansions,
+                 const RunControl& control);
+  /// Settles all imbalances from which a search of direction kNear starts.
+  template <Side kNear>
+  bool SettleAll(const RunControl& control);
+  /// Potentials from the distances between every imbalance that is left and its nearest target: one
+  /// Dijkstra's algorithm from all targets at once, against the direction of the searches that
+  /// follow. kNear: the side on which the targets are.
+  template <Side kNear>
+  bool Spread(std::int64_t imbalances, const RunControl& control);
+  /// Starts from both sides of the edge and the open vertices of side kNear.
+  template <Side kNear>
+  void StartSpread();
   template <Side kNear>
   void Expand(Vertex vertex, Cost distance);
   template <Side kNear>
@@ -101,8 +123,11 @@ class FlowSolver {
   template <Side kNear>
   void Relax(Vertex to, Cost distance, Vertex from);
   void OfferTarget(Vertex target, Cost distance, Vertex from);
+  QueueEntry PopNearest();
   template <Side kNear>
-  void FinishSearch();
+  void UpdatePotentials();
+  void ForgetLabels();
+  std::vector<Arc> PathToTarget() const;
   template <Side kNear>
   static Cost Mirror(Cost potential) {
     return kNear == kOut ? potential : -potential;
@@ -114,19 +139,22 @@ class FlowSolver {
   Node Follow(Node node, Side side) const;
 
   const LayeredGraph& graph_;
+  const Effort effort_;
   std::vector<Link> link_;       // by vertex
   std::vector<Cost> potential_;  // by vertex
 
   // The edge is one vertex until paths are taken away; then its two sides part.
   Cost edge_potential_[2] = {0, 0};
-  bool edge_is_target_ = true;
 
   // One search at a time.
+  enum class Targets { kImbalances, kBeginnings, kNone };
+  Targets targets_ = Targets::kImbalances;
   std::vector<Label> label_;     // by vertex; kUnreached outside a search
   std::vector<Vertex> reached_;  // vertices with a label
   std::vector<QueueEntry> queue_;
   Cost target_distance_ = 0;
   Arc target_arc_ = {kEdge, kEdge};
+  std::int64_t expansions_ = 0;  // in the searches since the last sweep
 };
 
 }  // namespace vantage::linking

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "vantage/linking/flow_solver.h"
+#include "vantage/linking/layered_graph.h"
 #include "vantage/linking/lemon_oracle.h"
 #include "vantage/linking/linker.h"
 
@@ -215,6 +217,30 @@ TEST(LinkerOracle, EqualsNetworkSimplexOnRandomProblems) {
   // The problems are worth solving.
   EXPECT_GT(with_paths, 500);
   EXPECT_GT(capped, 100);
+}
+
+// The order of searches and the sweeps between them may not change the optimum: here nothing is
+// near, and a sweep stands before every search, or only before some.
+TEST(LinkerOracle, AnyEffortFindsTheOptimum) {
+  for (unsigned seed = 1000; seed < 1300; ++seed) {
+    SCOPED_TRACE(seed);
+    Instance instance = RandomInstance(seed, Limits{});
+    instance.options.max_paths = 0;
+    const Result<LinkingResult> right = LinkPaths(instance.problem(), instance.options);
+    ASSERT_TRUE(right) << right.error().message;
+    const Result<linking::LayeredGraph> graph =
+        linking::MakeLayeredGraph(instance.problem(), instance.options);
+    ASSERT_TRUE(graph);
+    for (const linking::FlowSolver::Effort effort :
+         {linking::FlowSolver::Effort{.nearby = 1, .share_between_sweeps = 0},
+          {.nearby = 0, .share_between_sweeps = 0.1},
+          {.nearby = 5, .share_between_sweeps = 0.01}}) {
+      linking::FlowSolver solver(*graph, effort);
+      ASSERT_TRUE(solver.Solve({}));
+      ASSERT_EQ(solver.TotalCost(), Units(right->report.cost));
+      ASSERT_EQ(CheckPaths(instance, solver.Paths()), solver.TotalCost());
+    }
+  }
 }
 
 TEST(LinkerOracle, EqualsBruteForceOnTinyProblems) {
