@@ -3,42 +3,18 @@
 #include "vantage/video/detections.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "vantage/base/file.h"
+#include "vantage/base/text.h"
 #include "vantage/video/picture.h"
 
 namespace vantage {
 namespace {
 
 constexpr std::int64_t kMaxFrames = 10'000'000;
-
-std::string_view Trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) {
-    text.remove_suffix(1);
-  }
-  return text;
-}
-
-std::vector<std::string_view> Fields(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t at = 0;;) {
-    const std::size_t comma = std::min(line.find(',', at), line.size());
-    fields.push_back(Trimmed(line.substr(at, comma - at)));
-    if (comma == line.size()) return fields;
-    at = comma + 1;
-  }
-}
-
-template <class Number>
-bool Parse(std::string_view text, Number& value) {
-  const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return code == std::errc() && stop == text.data() + text.size();
-}
 
 /// One row; `where` is "file:line".
 Status ReadRow(const std::string& where, std::string_view line, std::size_t columns, ImageSize size,
@@ -48,14 +24,14 @@ Status ReadRow(const std::string& where, std::string_view line, std::size_t colu
     return Fail("{}: has {} fields; the header names {}", where, fields.size(), columns);
   }
   std::int64_t frame = 0;
-  if (!Parse(fields[0], frame) || frame < 0 || frame >= kMaxFrames) {
+  if (!ParseNumber(fields[0], frame) || frame < 0 || frame >= kMaxFrames) {
     return Fail("{}: frame is '{}'; it must be a whole number from 0 to {}", where, fields[0],
                 kMaxFrames - 1);
   }
   constexpr const char* kNames[] = {"xmin", "ymin", "xmax", "ymax", "score"};
   double numbers[5] = {0, 0, 0, 0, 1};
   for (std::size_t i = 1; i < columns; ++i) {
-    if (!Parse(fields[i], numbers[i - 1]) || !std::isfinite(numbers[i - 1])) {
+    if (!ParseNumber(fields[i], numbers[i - 1]) || !std::isfinite(numbers[i - 1])) {
       return Fail("{}: {} is '{}'; it must be a finite number", where, kNames[i - 1], fields[i]);
     }
   }
@@ -110,12 +86,7 @@ Result<Detections> ReadDetections(const std::filesystem::path& path, ImageSize s
   VANTAGE_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
   Detections detections;
   std::size_t columns = 0;
-  std::int64_t line_number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line = Trimmed(std::string_view(text).substr(at, end - at));
-    at = end + 1;
-    ++line_number;
+  VANTAGE_RETURN_IF_ERROR(ForEachLine(text, [&](std::string_view line, std::size_t number) -> Status {
     if (columns == 0) {
       if (line != "frame,xmin,ymin,xmax,ymax,score" && line != "frame,xmin,ymin,xmax,ymax") {
         return Fail(
@@ -123,11 +94,11 @@ Result<Detections> ReadDetections(const std::filesystem::path& path, ImageSize s
             path.string());
       }
       columns = line.ends_with("score") ? 6 : 5;
-    } else if (!line.empty()) {
-      VANTAGE_RETURN_IF_ERROR(ReadRow(fmt::format("{}:{}", path.string(), line_number), line,
-                                      columns, size, detections));
+      return {};
     }
-  }
+    if (line.empty()) return {};
+    return ReadRow(fmt::format("{}:{}", path.string(), number), line, columns, size, detections);
+  }));
   if (detections.empty()) return Fail("{}: holds no detections", path.string());
   return detections;
 }
