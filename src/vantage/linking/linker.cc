@@ -39,6 +39,11 @@ void VisitOptions(LinkingOptions& options, OptionVisitor& visitor) {
                  options.movement_cost, Range::Between(0, 1000));
   visitor.Number({"max_paths", "", "At most this many paths; 0: any number"}, options.max_paths,
                  Range::AtLeast(0));
+  visitor.Choice({"access", "", "Where people may appear and vanish, besides doors"},
+                 options.access,
+                 {{"border", AccessRule::kBorder},
+                  {"anywhere", AccessRule::kAnywhere},
+                  {"doors", AccessRule::kDoors}});
 }
 
 Result<LinkingResult> LinkPaths(const LinkingProblem& problem, const LinkingOptions& options,

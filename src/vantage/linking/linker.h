@@ -13,6 +13,13 @@
 
 namespace vantage {
 
+/// Where people may appear and vanish at every frame (doors always count besides).
+enum class AccessRule {
+  kBorder,    ///< seen cells on the border of the grid or beside a cell that no camera sees
+  kAnywhere,  ///< every cell
+  kDoors,     ///< nowhere else
+};
+
 /// Options of the linking stage (algorithms.md section 4; Berclaz et al. 2011).
 struct LinkingOptions {
   /// Cells that a person may move per frame, Chebyshev distance, 0 <= depth <= 10.
@@ -27,6 +34,8 @@ struct LinkingOptions {
   double movement_cost = 0;
   /// At most this many paths, >= 0; 0 means any number.
   int max_paths = 0;
+  /// Where paths may begin and end; LinkPaths itself takes the cells as part of the problem.
+  AccessRule access = AccessRule::kBorder;
 };
 void VisitOptions(LinkingOptions& options, OptionVisitor& visitor);
 
