@@ -77,8 +77,8 @@ void VisitOptions(OccupancyOptions& o, OptionVisitor& v) {
 struct OccupancySolver::Workspace {
   /// Sums over the pixels left of and above a corner: of M and of M B.
   struct Sums {
-    double covered_not;
-    double wrong;
+    double m;
+    double mb;
   };
   std::vector<double> absence;      // n
   std::vector<double> log_absence;  // log n; 0 for the cells that are left out of M
@@ -183,10 +183,9 @@ void OccupancySolver::BuildSums(const CameraCells& camera, const cv::Mat& b_imag
     Workspace::Sums row_sums{0, 0};
     below[0] = row_sums;
     for (std::size_t x = 0; x < width; ++x) {
-      row_sums.covered_not += work.row[x];
-      row_sums.wrong += work.row[x] * static_cast<double>(b[x]);
-      below[x + 1] = {above[x + 1].covered_not + row_sums.covered_not,
-                      above[x + 1].wrong + row_sums.wrong};
+      row_sums.m += work.row[x];
+      row_sums.mb += work.row[x] * static_cast<double>(b[x]);
+      below[x + 1] = {above[x + 1].m + row_sums.m, above[x + 1].mb + row_sums.mb};
     }
   }
 }
@@ -204,10 +203,10 @@ void OccupancySolver::AddLogRatios(const CameraCells& camera, const Evidence& ev
   const double scale = 1 / (2 * options_.variance);
   for (const VisibleCell& c : camera.cells) {
     const auto cell = static_cast<std::size_t>(c.cell);
-    const double m = sums[c.bottom_right].covered_not - sums[c.bottom_left].covered_not -
-                     sums[c.top_right].covered_not + sums[c.top_left].covered_not;
-    const double mv = sums[c.bottom_right].wrong - sums[c.bottom_left].wrong -
-                      sums[c.top_right].wrong + sums[c.top_left].wrong;
+    const double m =
+        sums[c.bottom_right].m - sums[c.bottom_left].m - sums[c.top_right].m + sums[c.top_left].m;
+    const double mv = sums[c.bottom_right].mb - sums[c.bottom_left].mb - sums[c.top_right].mb +
+                      sums[c.top_left].mb;
     const double l = work.absent[cell];
     const double present = (difference + m - 2 * mv) / (surface + m);
     const double absent = (difference + l * (m - 2 * mv)) / std::max(surface + l * m, min_surface);
