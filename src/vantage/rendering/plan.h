@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "vantage/rendering/people.h"
+#include "vantage/scene/scene.h"
+
+namespace vantage {
+
+/// Bird's-eye plan of the scene's area: x to the right, y up, metres. Ground that cameras see is
+/// lighter, the more of them the lighter; cameras beyond the plan's edge show as arrows on it.
+class Plan {
+ public:
+  /// Draws what does not move. The area fills `size` up to a margin; `size` at least 64 x 64.
+  Plan(const Scene& scene, cv::Size size);
+
+  /// The plan with these people: dots with numbers and trails (CV_8UC3).
+  cv::Mat Draw(const std::vector<Person>& people) const;
+
+  cv::Point2d PixelFromGround(const Eigen::Vector2d& ground_m) const;
+  Eigen::Vector2d GroundFromPixel(const cv::Point2d& pixel) const;
+
+ private:
+  void DrawCoverage(const Scene& scene);
+  void DrawGrid();
+  void DrawCameras(const Scene& scene);
+  void DrawScaleBar();
+
+  cv::Mat ground_;
+  double unit_ = 1;  ///< sizes follow the plan's: 1 for 600 pixels
+  double pixels_per_m_ = 1;
+  Eigen::Vector2d center_m_ = {0, 0};
+  cv::Point2d center_px_;
+};
+
+}  // namespace vantage
