@@ -16,6 +16,7 @@
 #include "vantage/geometry/camera.h"
 #include "vantage/geometry/person.h"
 #include "vantage/geometry/polygon.h"
+#include "vantage/video/frame_source.h"
 
 namespace vantage {
 
@@ -23,9 +24,11 @@ namespace vantage {
 struct SourceSpec {
   enum class Kind { kVideo, kPictures, kMasks, kDetections };
   Kind kind = Kind::kVideo;
-  /// A video or CSV file, or numbered pictures as a pattern with one %d (e.g. "view1/%06d.png").
+  /// A video or CSV file; numbered pictures as a pattern with one %d or %0Nd ("view1/%06d.png"), or
+  /// a folder of pictures; masks may be any of these but CSV.
   std::filesystem::path path;
-  /// Detections only: size of the pictures that the boxes were found in.
+  /// Detections only: size of the pictures that the boxes were found in; unless the scene says
+  /// otherwise, that of the calibration.
   ImageSize size;
   /// Detections only: boxes with a lower score are left out.
   double min_score = 0.5;
@@ -49,6 +52,10 @@ struct GridOptions {
 };
 void VisitOptions(GridOptions& options, OptionVisitor& visitor);
 
+/// Opens the pictures or masks of one camera (not moved by its offset: MultiCameraReader does
+/// that).
+Result<std::unique_ptr<FrameSource>> OpenSource(const SourceSpec& source);
+
 /// The options tables of the stages ([background], [occupancy], [linking], [tracks]) as read; the
 /// pipeline binds them to the stages' own options, so that the scene does not depend on the stages.
 class StageTables {
@@ -58,19 +65,24 @@ class StageTables {
   StageTables(StageTables&&) noexcept;
   StageTables& operator=(StageTables&&) noexcept;
 
-  /// Sets every field that the table `name` gives. Fails, with file and line, on unknown keys, wrong
-  /// types and values out of range. An absent table leaves the options as they are.
+  /// Sets every field that the table `name` gives. Fails, with file and line, on unknown keys,
+  /// wrong types and values out of range; the options may then be set in part. An absent table
+  /// leaves them as they are.
   template <class Options>
   Status Bind(std::string_view name, Options& options) const {
     return BindWith(name, [&](OptionVisitor& visitor) { VisitOptions(options, visitor); });
   }
 
+  /// True when the scene file has the table `name`.
+  bool Has(std::string_view name) const;
+  /// Names of the tables that the scene file has, in alphabetical order.
+  std::vector<std::string> given() const;
+
   struct Content;
   explicit StageTables(std::unique_ptr<Content> content);
 
  private:
-  Status BindWith(std::string_view name,
-                  const std::function<void(OptionVisitor&)>& visit) const;
+  Status BindWith(std::string_view name, const std::function<void(OptionVisitor&)>& visit) const;
   std::unique_ptr<Content> content_;
 };
 
