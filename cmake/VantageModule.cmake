@@ -29,12 +29,13 @@ endif()
 
 # Third-party headers are not ours to warn about: all come as SYSTEM.
 add_library(vantage_opencv INTERFACE)
-target_include_directories(vantage_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+target_include_directories(vantage_opencv SYSTEM INTERFACE
+                           "$<BUILD_INTERFACE:${OpenCV_INCLUDE_DIRS}>")
 target_link_libraries(vantage_opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs
                                                opencv_videoio opencv_calib3d)
 add_library(vantage_dependencies INTERFACE)
 target_link_libraries(vantage_dependencies INTERFACE vantage_opencv Eigen3::Eigen TBB::tbb fmt::fmt
-                                                     tl::expected)
+                                                     tl::expected nlohmann_json::nlohmann_json)
 
 # vantage_add_module(<name> SOURCES <file>... TESTS <file>... [LINK <library>...] [TEST_LINK <library>...])
 #   Adds src/vantage/<name> to the library and its tests as one executable, vantage_<name>_test.
