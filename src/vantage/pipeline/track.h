@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vantage/background/subtractor.h"
+#include "vantage/base/result.h"
+#include "vantage/base/run_control.h"
+#include "vantage/linking/link_maps.h"
+#include "vantage/occupancy/maps.h"
+#include "vantage/occupancy/solver.h"
+#include "vantage/scene/scene.h"
+#include "vantage/tracks/track.h"
+
+namespace vantage {
+
+/// The options of every stage.
+struct StageOptions {
+  BackgroundOptions background;
+  OccupancyOptions occupancy;
+  LinkingOptions linking;
+  TrackOptions tracks;
+};
+
+/// Sets what the scene's tables [background], [occupancy], [linking] and [tracks] give.
+Status BindStages(const Scene& scene, StageOptions& options);
+
+/// What the way from pictures to maps did.
+struct MapsReport {
+  std::int64_t frames = 0;
+  /// Fixed-point iterations per frame, and frames that used all allowed ones without settling.
+  double mean_iterations = 0;
+  std::int64_t frames_not_converged = 0;
+  /// Cells of the area, and of these the ones that no camera sees.
+  std::int64_t area_cells = 0;
+  std::int64_t unseen_area_cells = 0;
+  /// Wall-clock.
+  double read_secs = 0;
+  double background_secs = 0;
+  double occupancy_secs = 0;
+  /// One entry per camera; cameras that deliver masks have an empty one.
+  std::vector<BackgroundReport> background;
+};
+
+struct MapsResult {
+  OccupancyMaps maps;
+  MapsReport report;
+};
+
+/// Takes the masks of each frame as the pipeline sees them (e.g. to write them); may be empty.
+using MaskSink = std::function<Status(FrameIndex frame, const std::vector<cv::Mat>& masks)>;
+
+/// From pictures to occupancy maps.
+Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, int threads,
+                               const RunControl& control = {}, const MaskSink& mask_sink = {});
+
+struct TrackingReport {
+  MapsReport maps;
+  LinkMapsReport linking;
+  double total_secs = 0;
+};
+
+struct TrackingResult {
+  Tracks tracks;
+  OccupancyMaps maps;
+  TrackingReport report;
+};
+
+/// The whole way: from a scene to tracks.
+Result<TrackingResult> TrackPeople(const Scene& scene, const StageOptions& options, int threads,
+                             const RunControl& control = {}, const MaskSink& mask_sink = {});
+
+}  // namespace vantage
