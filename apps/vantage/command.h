@@ -23,6 +23,7 @@ struct CommonFlags {
   int threads = 0;  ///< 0: all processors; resolved to at least 1 before the command runs
   bool quiet = false;
   bool json = false;
+  std::vector<std::string> arguments;  ///< as typed, without the program's name
 };
 
 using Action = std::function<Status(const CommonFlags& common)>;

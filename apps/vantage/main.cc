@@ -19,7 +19,7 @@ constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
 std::vector<Command> Commands() {
-  return {OccupancyCommand()};
+  return {TrackCommand(), OccupancyCommand()};
 }
 
 int Run(int argc, char** argv) {
@@ -29,6 +29,7 @@ int Run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("vantage ") + kVersion);
   app.require_subcommand(1);
   CommonFlags common;
+  common.arguments.assign(argv + 1, argv + argc);
   Action chosen;
   for (const Command& command : Commands()) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);

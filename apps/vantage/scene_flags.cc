@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "scene_flags.h"
+
+namespace vantage::app {
+
+CLI::Option* SceneFlags::Define(CLI::App& app) {
+  CLI::Option* scene = app.add_option("scene", scene_, "Scene file (TOML)");
+  app.add_option("--data", data_,
+                 "Folder that paths in the scene are relative to; default: the scene's own");
+  grid_ = AddOptionFlags(app, GridOptions{}, "", "Grid");
+  person_ = AddOptionFlags(app, PersonOptions{}, "person-", "Person");
+  background_ = AddOptionFlags(app, BackgroundOptions{}, "background-", "Background");
+  occupancy_ = AddOptionFlags(app, OccupancyOptions{}, "occupancy-", "Occupancy");
+  linking_ = AddOptionFlags(app, LinkingOptions{}, "linking-", "Linking");
+  tracks_ = AddOptionFlags(app, TrackOptions{}, "tracks-", "Tracks");
+  return scene;
+}
+
+Result<SceneSetup> SceneFlags::Load() const {
+  SceneSetup setup;
+  setup.data = data_;
+  VANTAGE_ASSIGN_OR_RETURN(setup.scene, LoadScene(scene_, data_));
+  VANTAGE_RETURN_IF_ERROR(BindStages(setup.scene, setup.options));
+  grid_.ApplyTo(setup.scene.grid);
+  person_.ApplyTo(setup.scene.person);
+  background_.ApplyTo(setup.options.background);
+  occupancy_.ApplyTo(setup.options.occupancy);
+  linking_.ApplyTo(setup.options.linking);
+  tracks_.ApplyTo(setup.options.tracks);
+  return setup;
+}
+
+}  // namespace vantage::app
