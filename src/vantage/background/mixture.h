@@ -39,8 +39,10 @@ struct MixtureOptions {
   /// Learning rate per frame, 0 < alpha <= 1. What stands still is background after about
   /// log(background_share) / log(1 - alpha) frames.
   double alpha = 0.005;
-  /// T, the least prior probability of background, 0 < background_share < 1.
-  double background_share = 0.7;
+  /// T, the least prior probability of background, 0 < background_share < 1. At 0.5 people who
+  /// stand for a while stay foreground twice as long as at the 0.7 of others; ghosts of what did
+  /// fade are left to ghost detection.
+  double background_share = 0.5;
   /// A Gaussian matches nearer than this many of its sigmas, > 0.
   double match_sigmas = 2.5;
   /// Weight of a new Gaussian, 0 < initial_weight < 1; alpha' where that is more.

@@ -123,7 +123,7 @@ TEST(Subtractor, OptionsAreOneFlatTable) {
   RecordOptions(BackgroundOptions{}, json);
   EXPECT_EQ(json.dump(),
             R"({"color":"luv","rate":"modified","gaussians":3,"alpha":0.005,)"
-            R"("background_share":0.7,"match_sigmas":2.5,"initial_weight":0.05,)"
+            R"("background_share":0.5,"match_sigmas":2.5,"initial_weight":0.05,)"
             R"("absorb_weight":1.0,"luv_initial_sigma":15.0,"luv_min_sigma":5.0,)"
             R"("rgb_initial_sigma":50.0,"rgb_min_sigma":20.0,"ghosts":"fep",)"
             R"("ghost_threshold":0.05,"ghost_min_area":50,"ghost_border":1,"open":1,"close":2,)"
@@ -173,10 +173,10 @@ TEST(Subtractor, GhostDetectionHelpsOnRealVideo) {
     none.mixture.color = fep.mixture.color = color;
     const double without = F1OnCaVignal(folder, none);
     const double with = F1OnCaVignal(folder, fep);
-    // Measured: 0.649 and 0.751 in LUV, 0.631 and 0.720 in RGB.
-    EXPECT_GT(without, color == ColorSpace::kLuv ? 0.64 : 0.62);
-    EXPECT_GT(with, color == ColorSpace::kLuv ? 0.74 : 0.71);
-    EXPECT_GT(with, without + 0.08);
+    // Measured: 0.562 and 0.744 in LUV, 0.550 and 0.706 in RGB.
+    EXPECT_GT(without, color == ColorSpace::kLuv ? 0.55 : 0.54);
+    EXPECT_GT(with, color == ColorSpace::kLuv ? 0.73 : 0.69);
+    EXPECT_GT(with, without + 0.14);
   }
 }
 
