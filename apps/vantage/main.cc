@@ -19,7 +19,7 @@ constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
 std::vector<Command> Commands() {
-  return {TrackCommand(), OccupancyCommand()};
+  return {TrackCommand(), BackgroundCommand(), OccupancyCommand()};
 }
 
 int Run(int argc, char** argv) {
