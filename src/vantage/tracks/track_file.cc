@@ -4,185 +4,241 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
-#include <tuple>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "vantage/base/file.h"
 #include "vantage/base/text.h"
 
 namespace vantage {
+namespace fs = std::filesystem;
 namespace {
 
-constexpr FrameIndex kMaxFrame = 1'000'000'000;
+constexpr std::int64_t kLastFrame = 1'000'000'000;
+constexpr std::int64_t kLastId = std::int64_t{1} << 53;  // whole numbers are exact up to here
 
-/// A line of a table: where it stands, for messages, and its fields.
+/// One line of a file, cut at its commas.
 struct Row {
-  std::string where;  // file:line
+  std::string place;  // file:line
   std::vector<std::string_view> fields;
-
-  Result<double> Number(std::size_t column, const char* name) const {
-    double value = 0;
-    if (!ParseNumber(fields[column], value) || !std::isfinite(value)) {
-      return Fail("{}: {} is '{}'; it must be a finite number", where, name, fields[column]);
-    }
-    return value;
-  }
-
-  /// Some tools write whole numbers as 1.0.
-  Result<std::int64_t> Whole(std::size_t column, const char* name, std::int64_t low) const {
-    VANTAGE_ASSIGN_OR_RETURN(const double value, Number(column, name));
-    if (value != std::floor(value) || value < static_cast<double>(low) ||
-        value > static_cast<double>(kMaxFrame)) {
-      return Fail("{}: {} is {}; it must be a whole number from {} to {}", where, name,
-                  fields[column], low, kMaxFrame);
-    }
-    return static_cast<std::int64_t>(value);
-  }
 };
 
-/// Points of each id by frame; refuses two in one frame.
+Result<double> ParseFinite(const Row& row, std::size_t column, std::string_view name) {
+  if (column >= row.fields.size()) {
+    return Fail("{}: has {} columns; '{}' is column {}", row.place, row.fields.size(), name,
+                column + 1);
+  }
+  double value = 0;
+  if (!ParseNumber(row.fields[column], value) || !std::isfinite(value)) {
+    return Fail("{}: {} is '{}'; it must be a finite number", row.place, name, row.fields[column]);
+  }
+  return value;
+}
+
+/// Some tools write whole numbers as 1.0.
+Result<std::int64_t> ParseWhole(const Row& row, std::size_t column, std::string_view name,
+                                std::int64_t low, std::int64_t high) {
+  VANTAGE_ASSIGN_OR_RETURN(const double value, ParseFinite(row, column, name));
+  if (value != std::floor(value) || value < static_cast<double>(low) ||
+      value > static_cast<double>(high)) {
+    return Fail("{}: {} is {}; it must be a whole number from {} to {}", row.place, name,
+                row.fields[column], low, high);
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+/// A frame of a file that counts from `first`, as one that counts from 0.
+Result<FrameIndex> ParseFrame(const Row& row, std::size_t column, FrameIndex first) {
+  VANTAGE_ASSIGN_OR_RETURN(const std::int64_t frame,
+                           ParseWhole(row, column, "frame", first, kLastFrame));
+  return frame - first;
+}
+
+Result<std::int64_t> ParseId(const Row& row, std::size_t column) {
+  return ParseWhole(row, column, "id", -kLastId, kLastId);
+}
+
+/// The lines of a file that are not blank; at least one.
+Result<std::vector<Row>> Rows(const fs::path& path, std::string_view text) {
+  std::vector<Row> rows;
+  VANTAGE_RETURN_IF_ERROR(ForEachLine(text, [&](std::string_view line, std::size_t number) {
+    if (!line.empty()) {
+      rows.push_back(
+          {.place = fmt::format("{}:{}", path.string(), number), .fields = Fields(line)});
+    }
+    return Status();
+  }));
+  if (!rows.empty()) return rows;
+  return Fail(
+      "{}: is empty; a track file begins with the header frame,id,x,y or is MOTChallenge's "
+      "text",
+      path.string());
+}
+
+/// MOTChallenge's text has none: its lines are numbers throughout.
+bool IsHeader(const Row& row) {
+  double number = 0;
+  return !ParseNumber(row.fields.front(), number);
+}
+
+/// Collects points by id and checks that no id comes twice in a frame.
 template <class Point>
-class TrackCollector {
+class Collector {
  public:
   Status Add(const Row& row, std::int64_t id, const Point& point) {
-    if (!tracks_[id].emplace(point.frame, point).second) {
-      return Fail("{}: id {} has a second position in frame {}", row.where, id, row.fields[0]);
-    }
-    return {};
+    const auto [known, added] = points_[id].emplace(point.frame, point);
+    if (added) return {};
+    return Fail("{}: id {} comes twice in this frame; ids must be unique within a frame", row.place,
+                id);
   }
 
-  template <class TrackType>
-  std::vector<TrackType> Take() {
-    std::vector<TrackType> tracks;
-    for (auto& [id, points] : tracks_) {
-      TrackType& track = tracks.emplace_back();
-      track.id = static_cast<TrackId>(id);
-      for (auto& [frame, point] : points) track.points.push_back(point);
+  template <class AnyTrack>
+  std::vector<AnyTrack> Finish() const {
+    std::vector<AnyTrack> tracks;
+    for (const auto& [id, points] : points_) {
+      AnyTrack& track = tracks.emplace_back();
+      track.id = TrackId{id};
+      for (const auto& [frame, point] : points) track.points.push_back(point);
     }
     return tracks;
   }
 
  private:
-  std::map<std::int64_t, std::map<FrameIndex, Point>> tracks_;
+  std::map<std::int64_t, std::map<FrameIndex, Point>> points_;
 };
 
-/// Calls `visit(row)` for each line that is not empty, after `lines_to_skip`.
-template <class Visit>
-Status ForEachRow(const std::filesystem::path& path, std::string_view text,
-                  std::size_t lines_to_skip, std::size_t min_fields, const Visit& visit) {
-  return ForEachLine(text, [&](std::string_view line, std::size_t number) -> Status {
-    if (line.empty() || number <= lines_to_skip) return {};
-    const Row row{fmt::format("{}:{}", path.string(), number), Fields(line)};
-    if (row.fields.size() < min_fields) {
-      return Fail("{}: has {} fields; at least {} are needed", row.where, row.fields.size(),
-                  min_fields);
+struct CsvColumns {
+  std::size_t frame = 0, id = 0, x = 0, y = 0;
+  std::optional<std::size_t> inferred;
+};
+
+Result<CsvColumns> ReadHeader(const Row& header) {
+  const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
+    const auto found = std::find(header.fields.begin(), header.fields.end(), name);
+    if (found == header.fields.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - header.fields.begin());
+  };
+  CsvColumns columns;
+  for (const auto& [name, column] : {std::pair{"frame", &columns.frame},
+                                     {"id", &columns.id},
+                                     {"x", &columns.x},
+                                     {"y", &columns.y}}) {
+    const std::optional<std::size_t> found = find(name);
+    if (!found) {
+      return Fail("{}: the header has no column '{}'; it must have frame,id,x,y", header.place,
+                  name);
     }
-    return visit(row);
-  });
-}
-
-Result<Tracks> ReadCsv(const std::filesystem::path& path, std::string_view text,
-                       const std::vector<std::string_view>& header) {
-  const auto inferred = static_cast<std::size_t>(
-      std::find(header.begin(), header.end(), "inferred") - header.begin());
-  TrackCollector<TrackPoint> tracks;
-  VANTAGE_RETURN_IF_ERROR(
-      ForEachRow(path, text, 1, header.size(), [&](const Row& row) -> Status {
-        TrackPoint point;
-        VANTAGE_ASSIGN_OR_RETURN(point.frame, row.Whole(0, "frame", 0));
-        VANTAGE_ASSIGN_OR_RETURN(const std::int64_t id, row.Whole(1, "id", 0));
-        VANTAGE_ASSIGN_OR_RETURN(point.x_m, row.Number(2, "x"));
-        VANTAGE_ASSIGN_OR_RETURN(point.y_m, row.Number(3, "y"));
-        if (inferred < header.size()) {
-          VANTAGE_ASSIGN_OR_RETURN(const std::int64_t flag, row.Whole(inferred, "inferred", 0));
-          point.inferred = flag != 0;
-        }
-        return tracks.Add(row, id, point);
-      }));
-  return tracks.Take<Track>();
-}
-
-Result<Tracks> ReadMotChallengeGround(const std::filesystem::path& path, std::string_view text) {
-  constexpr std::size_t kX = 7;
-  constexpr std::size_t kY = 8;
-  TrackCollector<TrackPoint> tracks;
-  bool any_position = false;
-  VANTAGE_RETURN_IF_ERROR(ForEachRow(path, text, 0, kY + 1, [&](const Row& row) -> Status {
-    TrackPoint point;
-    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t frame, row.Whole(0, "frame", 1));
-    point.frame = frame - 1;
-    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t id, row.Whole(1, "id", 0));
-    VANTAGE_ASSIGN_OR_RETURN(point.x_m, row.Number(kX, "x (column 8)"));
-    VANTAGE_ASSIGN_OR_RETURN(point.y_m, row.Number(kY, "y (column 9)"));
-    any_position = any_position || point.x_m != -1 || point.y_m != -1;
-    return tracks.Add(row, id, point);
-  }));
-  if (!any_position) {
-    return Fail("{}: has no positions on the ground (columns 8 and 9 are all -1)", path.string());
+    *column = *found;
   }
-  return tracks.Take<Track>();
+  columns.inferred = find("inferred");
+  return columns;
+}
+
+Result<Tracks> ReadCsv(std::span<const Row> rows) {
+  VANTAGE_ASSIGN_OR_RETURN(const CsvColumns columns, ReadHeader(rows.front()));
+  Collector<TrackPoint> collector;
+  for (const Row& row : rows.subspan(1)) {
+    TrackPoint point;
+    VANTAGE_ASSIGN_OR_RETURN(point.frame, ParseFrame(row, columns.frame, 0));
+    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t id, ParseId(row, columns.id));
+    VANTAGE_ASSIGN_OR_RETURN(point.x_m, ParseFinite(row, columns.x, "x"));
+    VANTAGE_ASSIGN_OR_RETURN(point.y_m, ParseFinite(row, columns.y, "y"));
+    if (columns.inferred) {
+      VANTAGE_ASSIGN_OR_RETURN(const std::int64_t inferred,
+                               ParseWhole(row, *columns.inferred, "inferred", 0, 1));
+      point.inferred = inferred == 1;
+    }
+    VANTAGE_RETURN_IF_ERROR(collector.Add(row, id, point));
+  }
+  return collector.Finish<Track>();
+}
+
+Result<Tracks> ReadMotChallenge(std::span<const Row> rows) {
+  Collector<TrackPoint> collector;
+  for (const Row& row : rows) {
+    TrackPoint point;
+    VANTAGE_ASSIGN_OR_RETURN(point.frame, ParseFrame(row, 0, 1));
+    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t id, ParseId(row, 1));
+    VANTAGE_ASSIGN_OR_RETURN(point.x_m, ParseFinite(row, 7, "x"));
+    VANTAGE_ASSIGN_OR_RETURN(point.y_m, ParseFinite(row, 8, "y"));
+    if (point.x_m == -1 && point.y_m == -1) {
+      return Fail(
+          "{}: x and y are -1, so the position is not known; ground positions in metres "
+          "are needed in columns 8 and 9",
+          row.place);
+    }
+    VANTAGE_RETURN_IF_ERROR(collector.Add(row, id, point));
+  }
+  return collector.Finish<Track>();
 }
 
 }  // namespace
 
-Result<Tracks> ReadTracks(const std::filesystem::path& path) {
+Result<Tracks> ReadTracks(const fs::path& path) {
   VANTAGE_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
-  const std::string_view first = std::string_view(text).substr(0, text.find('\n'));
-  const std::vector<std::string_view> header = Fields(first);
-  if (header.size() >= 4 && header[0] == "frame" && header[1] == "id" && header[2] == "x" &&
-      header[3] == "y") {
-    return ReadCsv(path, text, header);
-  }
-  double number = 0;
-  if (!ParseNumber(header[0], number)) {
-    return Fail("{}:1: is neither the header frame,id,x,y,... of a track file nor a line of "
-                "MOTChallenge's text",
+  VANTAGE_ASSIGN_OR_RETURN(const std::vector<Row> rows, Rows(path, text));
+  return IsHeader(rows.front()) ? ReadCsv(rows) : ReadMotChallenge(rows);
+}
+
+Result<BoxTracks> ReadBoxTracks(const fs::path& path) {
+  VANTAGE_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
+  VANTAGE_ASSIGN_OR_RETURN(const std::vector<Row> rows, Rows(path, text));
+  if (IsHeader(rows.front())) {
+    return Fail("{}: begins with a header; boxes are read from MOTChallenge's text, which has none",
                 path.string());
   }
-  return ReadMotChallengeGround(path, text);
-}
-
-Result<std::vector<BoxTrack>> ReadBoxTracks(const std::filesystem::path& path) {
-  VANTAGE_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
-  TrackCollector<BoxTrackPoint> tracks;
-  VANTAGE_RETURN_IF_ERROR(ForEachRow(path, text, 0, 6, [&](const Row& row) -> Status {
-    BoxTrackPoint point;
-    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t frame, row.Whole(0, "frame", 1));
-    point.frame = frame - 1;
-    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t id, row.Whole(1, "id", 0));
-    VANTAGE_ASSIGN_OR_RETURN(point.box.left, row.Number(2, "left"));
-    VANTAGE_ASSIGN_OR_RETURN(point.box.top, row.Number(3, "top"));
-    VANTAGE_ASSIGN_OR_RETURN(point.box.width, row.Number(4, "width"));
-    VANTAGE_ASSIGN_OR_RETURN(point.box.height, row.Number(5, "height"));
-    if (point.box.width <= 0 || point.box.height <= 0) {
-      return Fail("{}: the box is {} x {} px; both must be above 0", row.where, point.box.width,
-                  point.box.height);
+  Collector<BoxPoint> collector;
+  for (const Row& row : rows) {
+    BoxPoint point;
+    VANTAGE_ASSIGN_OR_RETURN(point.frame, ParseFrame(row, 0, 1));
+    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t id, ParseId(row, 1));
+    VANTAGE_ASSIGN_OR_RETURN(point.left_px, ParseFinite(row, 2, "left"));
+    VANTAGE_ASSIGN_OR_RETURN(point.top_px, ParseFinite(row, 3, "top"));
+    VANTAGE_ASSIGN_OR_RETURN(point.width_px, ParseFinite(row, 4, "width"));
+    VANTAGE_ASSIGN_OR_RETURN(point.height_px, ParseFinite(row, 5, "height"));
+    if (point.width_px <= 0 || point.height_px <= 0) {
+      return Fail("{}: the box is {} x {} pixels; both must be above 0", row.place, point.width_px,
+                  point.height_px);
     }
     if (row.fields.size() > 6) {
-      VANTAGE_ASSIGN_OR_RETURN(const double confidence, row.Number(6, "confidence"));
-      if (confidence == 0) return {};
+      VANTAGE_ASSIGN_OR_RETURN(const double confidence, ParseFinite(row, 6, "confidence"));
+      if (confidence == 0) continue;
     }
-    return tracks.Add(row, id, point);
-  }));
-  return tracks.Take<BoxTrack>();
+    VANTAGE_RETURN_IF_ERROR(collector.Add(row, id, point));
+  }
+  return collector.Finish<BoxTrack>();
 }
 
-Status WriteTracks(const std::filesystem::path& path, const Tracks& tracks,
-                   double frames_per_second) {
-  std::vector<std::tuple<FrameIndex, std::int64_t, const TrackPoint*>> rows;
+Status WriteTracks(const fs::path& path, const Tracks& tracks, double frames_per_second) {
+  if (!(std::isfinite(frames_per_second) && frames_per_second > 0)) {
+    return Fail("{}: {} frames per second; it must be above 0", path.string(), frames_per_second);
+  }
+  std::vector<std::pair<std::int64_t, const TrackPoint*>> points;
   for (const Track& track : tracks) {
     for (const TrackPoint& point : track.points) {
-      rows.emplace_back(point.frame, static_cast<std::int64_t>(track.id), &point);
+      if (!std::isfinite(point.x_m) || !std::isfinite(point.y_m)) {
+        return Fail("{}: track {} is at ({}, {}) m in frame {}; positions must be finite",
+                    path.string(), static_cast<std::int64_t>(track.id), point.x_m, point.y_m,
+                    point.frame);
+      }
+      points.emplace_back(static_cast<std::int64_t>(track.id), &point);
     }
   }
-  std::sort(rows.begin(), rows.end());
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.second->frame, a.first) < std::pair(b.second->frame, b.first);
+  });
   std::string text = "frame,id,x,y,time,inferred\n";
-  for (const auto& [frame, id, point] : rows) {
-    fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{:.4f},{:.4f},{}\n", frame, id,
-                   point->x_m, point->y_m, static_cast<double>(frame) / frames_per_second,
-                   point->inferred ? 1 : 0);
+  for (const auto& [id, point] : points) {
+    fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{:.4f},{:.3f},{:d}\n", point->frame, id,
+                   point->x_m, point->y_m, static_cast<double>(point->frame) / frames_per_second,
+                   point->inferred);
   }
   return WriteTextFile(path, text);
 }

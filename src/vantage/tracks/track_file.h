@@ -3,54 +3,35 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "vantage/base/result.h"
+#include "vantage/tracks/box_track.h"
 #include "vantage/tracks/track.h"
 
-/// Files of tracks. Two formats are read, told apart by their first line:
+/// Files of tracks. Two formats are read, told apart by the first line:
 ///
-/// Vantage's CSV: a header that begins with frame,id,x,y, then one position a line, in metres, frames
-/// from 0. Of the optional columns `inferred` (0 or 1) is read, `time` and unknown ones are not.
+/// - Vantage CSV: a header with the columns frame, id, x, y (metres), optionally `inferred` (0 or
+/// 1)
+///   and others, which are passed over (`time`, in seconds, is for people). Frames count from 0.
+/// - MOTChallenge text, no header: frame, id, left, top, width, height, confidence, x, y, z. Frames
+///   count from 1 there and are lowered by one on reading, so that the first picture of a recording
+///   is frame 0 in both. Positions are metres, boxes pixels; what is not known is -1. The
+///   confidence is not looked at: every row counts, as in published figures on such truth.
 ///
-/// MOTChallenge's text: no header; frame,id,left,top,width,height,confidence,x,y,... with frames and
-/// pixels from 1. Frames become ours by taking away 1, so that the first frame of a recording is
-/// frame 0 in both formats.
-///
-/// Errors name file and line. A frame that is negative, a number that is not finite, and a second
-/// position of the same id in the same frame are errors.
+/// Errors name file and line. Refused: numbers that are not finite, negative frames, frames above
+/// 10^9, the same id twice in a frame, empty files.
 
 namespace vantage {
 
-/// Reads positions on the ground (of MOTChallenge's text, columns 8 and 9; an error where they are
-/// missing or all -1).
+/// Ground tracks of either format.
 Result<Tracks> ReadTracks(const std::filesystem::path& path);
 
-/// Rectangle in a picture, pixels.
-struct ImageBox {
-  double left = 0;
-  double top = 0;
-  double width = 0;
-  double height = 0;
-};
+/// Boxes of a MOTChallenge file.
+Result<BoxTracks> ReadBoxTracks(const std::filesystem::path& path);
 
-struct BoxTrackPoint {
-  FrameIndex frame = 0;
-  ImageBox box;
-};
-
-/// One identity in a picture; frames strictly ascend.
-struct BoxTrack {
-  TrackId id{};
-  std::vector<BoxTrackPoint> points;
-};
-
-/// Reads boxes in a picture from MOTChallenge's text (columns 3 to 6). Lines of truth whose
-/// confidence (column 7) is 0 are marked there as not to be evaluated and are left out.
-Result<std::vector<BoxTrack>> ReadBoxTracks(const std::filesystem::path& path);
-
-/// Writes Vantage's CSV, whole or not at all, in order of frame and id, positions to 0.1 mm:
-/// frame,id,x,y,time,inferred with the time in seconds, frame / frames_per_second (> 0).
+/// Writes Vantage CSV, whole or not at all: frame,id,x,y,time,inferred in the order of frames, then
+/// ids; x and y to 0.1 mm. `frames_per_second` gives the time of a frame, frame 0 being at 0 s.
+/// Fails on positions that are not finite and unless frames_per_second is above 0.
 Status WriteTracks(const std::filesystem::path& path, const Tracks& tracks,
                    double frames_per_second);
 
