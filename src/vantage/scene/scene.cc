@@ -27,6 +27,12 @@ constexpr std::array<std::string_view, 4> kStages = {"background", "occupancy", 
 
 Result<Polygon> MakePolygon(const TableReader& area, std::string_view key,
                             const std::vector<std::vector<double>>& corners) {
+  // Polygon::Create compares all pairs of edges.
+  constexpr std::size_t kMaxCorners = 1000;
+  if (corners.size() > kMaxCorners) {
+    return area.FailAt(
+        key, fmt::format("has {} corners; a polygon may have {}", corners.size(), kMaxCorners));
+  }
   std::vector<Eigen::Vector2d> corners_m;
   for (const std::vector<double>& corner : corners) corners_m.emplace_back(corner[0], corner[1]);
   Result<Polygon> polygon = Polygon::Create(std::move(corners_m));

@@ -209,8 +209,9 @@ Result<double> TableReader::Number(std::string_view key, const Range& range,
   const auto number = AsNumber(*value);
   if (!number || !range.Contains(*number)) {
     const std::string rule = WithUnit(range.Text(), unit);
+    const bool says_number = number || rule.starts_with("a finite number");
     return FailAt(key, fmt::format("is {}; it must be {}{}", Shown(*value),
-                                   number ? "" : "a number, ", rule));
+                                   says_number ? "" : "a number, ", rule));
   }
   return *number;
 }

@@ -107,8 +107,14 @@ std::int64_t AviIndexedFrames(Bytes& bytes, const Chunk& index, std::string_view
 }
 
 void InspectAvi(Bytes& bytes, ContainerFacts& facts) {
-  // Files beyond 1 GB are several RIFF lists, of which idx1 indexes only the first.
-  const std::vector<Chunk> riffs = RiffChunks(bytes, 0, bytes.size());
+  // Files beyond 1 GB are several RIFF lists, of which idx1 indexes only the first. What follows
+  // the last is padding; a size of 0 was never filled in by the writer.
+  std::vector<Chunk> riffs = RiffChunks(bytes, 0, bytes.size());
+  const auto padding = std::find_if(riffs.begin(), riffs.end(), [](const Chunk& chunk) {
+    return chunk.name != "RIFF" || chunk.begin == chunk.end;
+  });
+  riffs.erase(padding, riffs.end());
+  if (riffs.empty()) return;
   facts.needed_bytes = riffs.back().end;
   if (facts.cut_short() || riffs.size() != 1) return;
   std::optional<std::string> stream;
@@ -131,7 +137,8 @@ std::vector<Chunk> Boxes(Bytes& bytes, std::uint64_t begin, std::uint64_t end) {
   for (std::uint64_t at = begin; at + 8 <= end && boxes.size() < kMaxChunks;) {
     auto size = bytes.Big(at, 4);
     const auto name = bytes.Text(at + 4, 4);
-    if (!size || !name) break;
+    const auto printable = [](unsigned char c) { return std::isprint(c) != 0; };
+    if (!size || !name || !std::all_of(name->begin(), name->end(), printable)) break;
     std::uint64_t header = 8;
     if (*size == 1) {
       size = bytes.Big(at + 8, 8);

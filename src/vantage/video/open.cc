@@ -41,11 +41,15 @@ class VideoSource final : public FrameSource {
       ++next_;
       ++skipped;
     }
-    for (; skipped < count; ++skipped, ++next_) {
-      if (ended_ || !capture_.grab()) {
-        VANTAGE_RETURN_IF_ERROR(CheckEnd());
-        return skipped;
+    try {
+      for (; skipped < count; ++skipped, ++next_) {
+        if (ended_ || !capture_.grab()) {
+          VANTAGE_RETURN_IF_ERROR(CheckEnd());
+          break;
+        }
       }
+    } catch (const cv::Exception& error) {
+      return Fail("{}: frame {} cannot be decoded: {}", info_.name, next_, error.err);
     }
     return skipped;
   }

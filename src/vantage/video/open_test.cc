@@ -188,6 +188,30 @@ TEST(OpenVideo, DroppedFramesOfAnAviAreNotMissed) {
   EXPECT_EQ(OpenVideo(folder / "dropped.avi").value()->info().frame_count, 30);
 }
 
+TEST(OpenVideo, PaddingAfterTheVideoIsNoTruncation) {
+  TemporaryFolder folder;
+  for (const auto& [name, codec] : {std::pair("a.avi", "MJPG"), std::pair("a.mp4", "avc1")}) {
+    const std::string bytes = Bytes(WriteVideo(folder / name, codec));
+    for (const std::string& padding :
+         {std::string(3, 'x'), std::string(100, '\0'), std::string(100, '\xff')}) {
+      WriteBytes(folder / name, bytes + padding);
+      const auto source = OpenVideo(folder / name);
+      ASSERT_TRUE(source) << MessageOf(source);
+      const Outcome outcome = ReadAll(**source);
+      EXPECT_EQ(outcome.frames, 40) << name;
+      EXPECT_EQ(outcome.message, "") << name;
+    }
+  }
+  // A writer that was stopped before it filled in the size: the end cannot be judged.
+  std::string bytes = Bytes(WriteVideo(folder / "a.avi", "MJPG"));
+  PutUint32(bytes, 4, 0);
+  WriteBytes(folder / "a.avi", bytes);
+  const auto source = OpenVideo(folder / "a.avi");
+  ASSERT_TRUE(source) << MessageOf(source);
+  EXPECT_EQ((*source)->info().frame_count, std::nullopt);
+  EXPECT_EQ(ReadAll(**source).frames, 40);
+}
+
 TEST(OpenVideo, RefusesWhatIsNoVideo) {
   TemporaryFolder folder;
   EXPECT_THAT(MessageOf(OpenVideo(folder / "none.mp4")), HasSubstr("none.mp4: no such file"));
