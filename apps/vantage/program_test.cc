@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+// Runs the program as a user does.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "vantage/base/file.h"
+#include "vantage/base/test_support.h"
+
+namespace vantage {
+namespace {
+
+using testing::DataFolder;
+using testing::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+Outcome RunProgram(const std::string& arguments) {
+  const TemporaryFolder folder;
+  const std::string command = fmt::format("'{}' {} >'{}' 2>'{}' </dev/null", VANTAGE_PROGRAM,
+                                          arguments, (folder / "out").string(),
+                                          (folder / "err").string());
+  const int status = std::system(command.c_str());
+  Outcome outcome;
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.out = ReadTextFile(folder / "out").value_or("");
+  outcome.err = ReadTextFile(folder / "err").value_or("");
+  return outcome;
+}
+
+/// Everything in a folder, temporaries included.
+std::vector<std::string> Entries(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  if (!std::filesystem::exists(folder)) return names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_directory()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// A scene that a test spoils: one camera 8 m up that looks down on a person who walks across,
+/// as ready masks of 160 x 120 pixels.
+struct SmallScene {
+  TemporaryFolder folder;
+  std::string camera = R"(
+[cameras.pinhole]
+size_px = [160, 120]
+focal_px = [120.0, 120.0]
+center_px = [79.5, 59.5]
+rotation = [[1.0, 0.0, 0.0], [0.0, -0.6, -0.8], [0.0, 0.8, -0.6]]
+translation_m = [0.0, 4.8, 10.4]
+)";
+  std::string area = "[[-3.0, -2.0], [3.0, -2.0], [3.0, 4.0], [-3.0, 4.0]]";
+  std::string source = R"({ masks = "masks/%06d.png" })";
+  std::string more;
+
+  SmallScene() {
+    std::filesystem::create_directories(folder / "masks");
+    for (int frame = 0; frame < 20; ++frame) {
+      cv::Mat mask(120, 160, CV_8UC1, cv::Scalar(0));
+      cv::rectangle(mask, cv::Rect(40 + 3 * frame, 45, 10, 22), cv::Scalar(255), cv::FILLED);
+      cv::imwrite((folder / fmt::format("masks/{:06d}.png", frame)).string(), mask);
+    }
+  }
+  std::string Write() const {
+    const std::string text = fmt::format(
+        "name = \"small\"\nframes_per_second = 10.0\n[area]\npolygon = {}\n[grid]\ncell = 0.5\n"
+        "extension = 1.0\n[person]\nwidth = 0.6\n{}\n[[cameras]]\nname = \"one\"\nsource = {}\n{}",
+        area, more, source, camera);
+    EXPECT_TRUE(WriteTextFile(folder / "scene.toml", text));
+    return (folder / "scene.toml").string();
+  }
+  std::filesystem::path out() const { return folder / "out"; }
+  Outcome Track() const {
+    return RunProgram(fmt::format("track '{}' -o '{}' --quiet", Write(), out().string()));
+  }
+};
+
+void ExpectOneLine(const Outcome& outcome, int status, const std::string& part) {
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  EXPECT_THAT(outcome.err, StartsWith("vantage: "));
+  EXPECT_THAT(outcome.err, HasSubstr(part));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+TEST(Program, HelpAndVersionSucceed) {
+  EXPECT_EQ(RunProgram("--version").status, 0);
+  const Outcome help = RunProgram("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* command : {"track", "background", "occupancy", "link", "evaluate", "render"}) {
+    EXPECT_THAT(help.out, HasSubstr(command));
+    EXPECT_EQ(RunProgram(std::string(command) + " --help").status, 0) << command;
+  }
+}
+
+TEST(Program, WrongUsageIsStatusTwo) {
+  ExpectOneLine(RunProgram(""), 2, "subcommand");
+  ExpectOneLine(RunProgram("track"), 2, "required");
+  ExpectOneLine(RunProgram("track scene.toml -o out --no-such-flag"), 2, "--no-such-flag");
+  ExpectOneLine(RunProgram("track scene.toml -o out --occupancy-variance nan"), 2, "variance");
+  ExpectOneLine(RunProgram("track scene.toml -o out --threads -3"), 2, "threads");
+}
+
+TEST(Program, TracksEvaluatesAndRendersOnePerson) {
+  const SmallScene scene;
+  const Outcome track = scene.Track();
+  ASSERT_EQ(track.status, 0) << track.err;
+  EXPECT_EQ(Entries(scene.out()), (std::vector<std::string>{"summary.json", "tracks.csv"}));
+  const auto summary =
+      nlohmann::json::parse(ReadTextFile(scene.out() / "summary.json").value_or("{}"));
+  EXPECT_EQ(summary["counts"]["frames"], 20);
+  EXPECT_EQ(summary["counts"]["tracks"], 1);
+  EXPECT_EQ(summary["options"]["person"]["width"], 0.6);
+
+  const std::string tracks = (scene.out() / "tracks.csv").string();
+  const Outcome evaluation =
+      RunProgram(fmt::format("evaluate tracks --truth '{0}' '{0}' --json", tracks));
+  ASSERT_EQ(evaluation.status, 0) << evaluation.err;
+  EXPECT_EQ(nlohmann::json::parse(evaluation.out)["mota"], 1.0);
+
+  const Outcome render = RunProgram(fmt::format("render '{}' -o '{}' --quiet", scene.out().string(),
+                                                (scene.folder / "video.mp4").string()));
+  EXPECT_EQ(render.status, 0) << render.err;
+  EXPECT_TRUE(std::filesystem::exists(scene.folder / "video.mp4"));
+}
+
+TEST(Program, SameBytesWhateverTheThreadCount) {
+  const SmallScene scene;
+  ASSERT_EQ(scene.Track().status, 0);
+  const std::string first = ReadTextFile(scene.out() / "tracks.csv").value();
+  const Outcome again = RunProgram(fmt::format("track '{}' -o '{}' --quiet --threads 3", scene.Write(),
+                                               (scene.folder / "again").string()));
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(ReadTextFile(scene.folder / "again/tracks.csv").value(), first);
+}
+
+TEST(Program, StagesAloneGiveWhatTheWholeWayGives) {
+  const SmallScene scene;
+  ASSERT_EQ(scene.Track().status, 0);
+  const std::string maps = (scene.folder / "maps.h5").string();
+  const std::string tracks = (scene.folder / "linked.csv").string();
+  const Outcome occupancy =
+      RunProgram(fmt::format("occupancy '{}' -o '{}' --quiet", scene.Write(), maps));
+  ASSERT_EQ(occupancy.status, 0) << occupancy.err;
+  const Outcome link = RunProgram(fmt::format("link '{}' -o '{}' --quiet", maps, tracks));
+  ASSERT_EQ(link.status, 0) << link.err;
+  EXPECT_EQ(ReadTextFile(tracks).value(), ReadTextFile(scene.out() / "tracks.csv").value());
+}
+
+TEST(Program, FlagsWinOverTheScene) {
+  SmallScene scene;
+  scene.more = "[occupancy]\nvariance = 0.002";
+  const Outcome outcome = RunProgram(fmt::format(
+      "track '{}' -o '{}' --quiet --json --occupancy-variance 0.004 --person-width 0.7",
+      scene.Write(), scene.out().string()));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto options = nlohmann::json::parse(outcome.out)["options"];
+  EXPECT_EQ(options["occupancy"]["variance"], 0.004);
+  EXPECT_EQ(options["person"]["width"], 0.7);
+}
+
+// --- Hostile input: one clear line, status 1, and nothing left behind ---------------------------------
+
+void ExpectFailure(const SmallScene& scene, const std::string& part) {
+  ExpectOneLine(scene.Track(), 1, part);
+  EXPECT_EQ(Entries(scene.out()), std::vector<std::string>());
+}
+
+TEST(HostileScene, MissingFiles) {
+  const TemporaryFolder folder;
+  ExpectOneLine(RunProgram(fmt::format("track '{0}/none.toml' -o '{0}/out'", folder.path().string())),
+                1, "none.toml: no such file");
+  SmallScene scene;
+  scene.source = R"({ video = "none.avi" })";
+  ExpectFailure(scene, "none.avi");
+}
+
+TEST(HostileScene, UnknownKeyNamesFileLineAndKey) {
+  SmallScene scene;
+  scene.more = "[occupancy]\nvarience = 0.01";
+  ExpectFailure(scene, "scene.toml:11: ");
+  ExpectFailure(scene, "varience");
+}
+
+TEST(HostileScene, EmptyAndTruncatedInputs) {
+  SmallScene scene;
+  scene.source = R"({ video = "empty.avi" })";
+  std::ofstream(scene.folder / "empty.avi").flush();
+  ExpectFailure(scene, "empty.avi");
+
+  scene.source = R"({ video = "text.mp4" })";
+  std::ofstream(scene.folder / "text.mp4") << "this is no video";
+  ExpectFailure(scene, "text.mp4");
+
+  scene.source = R"({ masks = "masks/%06d.png" })";
+  std::filesystem::resize_file(scene.folder / "masks/000007.png", 60);
+  ExpectFailure(scene, "000007.png");
+}
+
+TEST(HostileScene, WrongSizes) {
+  SmallScene scene;
+  cv::imwrite((scene.folder / "masks/000005.png").string(), cv::Mat::zeros(90, 160, CV_8UC1));
+  ExpectFailure(scene, "000005.png");
+  scene.camera.replace(scene.camera.find("[160, 120]"), 10, "[320, 240]");
+  ExpectFailure(scene, "320 x 240");
+}
+
+TEST(HostileScene, CalibrationThatIsNotANumber) {
+  SmallScene scene;
+  scene.camera.replace(scene.camera.find("120.0, 120.0"), 12, "nan, 120.0");
+  ExpectFailure(scene, "focal");
+}
+
+TEST(HostileScene, CameraThatLooksAtTheSky) {
+  SmallScene scene;
+  const std::string rotation = "[[1.0, 0.0, 0.0], [0.0, -0.6, -0.8], [0.0, 0.8, -0.6]]";
+  scene.camera.replace(scene.camera.find(rotation), rotation.size(),
+                       "[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]");
+  ExpectFailure(scene, "one");
+}
+
+TEST(HostileScene, AreaOutsideEveryView) {
+  SmallScene scene;
+  scene.area = "[[100.0, 100.0], [106.0, 100.0], [106.0, 106.0], [100.0, 106.0]]";
+  ExpectFailure(scene, "no camera sees");
+}
+
+TEST(HostileScene, UnwritableOutput) {
+  const SmallScene scene;
+  const std::string path = scene.Write();
+  ExpectOneLine(RunProgram(fmt::format("track '{}' -o /dev/null/out --quiet", path)), 1, "/dev/null");
+  ExpectOneLine(RunProgram(fmt::format("track '{0}' -o '{0}' --quiet", path)), 1, "scene.toml");
+}
+
+}  // namespace
+}  // namespace vantage
