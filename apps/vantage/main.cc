@@ -19,7 +19,8 @@ constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
 std::vector<Command> Commands() {
-  return {TrackCommand(), BackgroundCommand(), OccupancyCommand()};
+  return {TrackCommand(), BackgroundCommand(), OccupancyCommand(), LinkCommand(),
+          EvaluateCommand()};
 }
 
 int Run(int argc, char** argv) {

@@ -142,7 +142,7 @@ double MedianDistanceFromOrigin(const Tracks& tracks) {
 }  // namespace
 
 void VisitOptions(EvaluationOptions& options, OptionVisitor& visitor) {
-  visitor.Number({"threshold_m", "m", "A match on the ground is nearer than this"},
+  visitor.Number({"threshold", "m", "A match on the ground is nearer than this"},
                  options.threshold_m, Range::Above(0));
   visitor.Number({"min_iou", "", "A match in pictures overlaps at least this much (IoU)"},
                  options.min_iou, Range::AboveUpTo(0, 1));

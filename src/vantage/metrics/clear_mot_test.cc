@@ -199,7 +199,7 @@ TEST(ClearMot, RatiosOfNothingAreNaN) {
 TEST(ClearMot, RefusesWhatCannotBeMeasured) {
   EXPECT_THAT(testing::MessageOf(EvaluateTracks({}, {}, {})), HasSubstr("truth is empty"));
   EXPECT_THAT(testing::MessageOf(EvaluateTracks({Walk(1, {0})}, {}, {.threshold_m = 0})),
-              HasSubstr("evaluation.threshold_m is 0"));
+              HasSubstr("evaluation.threshold is 0"));
   const Result<Polygon> area = Polygon::Rectangle({50, 50}, {60, 60});
   EXPECT_THAT(testing::MessageOf(EvaluateTracks({Walk(1, {0})}, {}, {}, &*area)),
               HasSubstr("no position inside the area"));

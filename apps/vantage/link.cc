@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "vantage/base/file.h"
+#include "vantage/linking/link_maps.h"
+#include "vantage/occupancy/map_file.h"
+#include "vantage/scene/scene.h"
+#include "vantage/tracks/track_file.h"
+
+namespace vantage::app {
+namespace {
+
+struct Flags {
+  std::filesystem::path maps, output, scene, data;
+  OptionFlags linking, tracks;
+};
+
+/// Defaults, then what the scene says, then the flags given.
+struct Setup {
+  LinkingOptions linking;
+  TrackOptions tracks;
+  std::vector<Polygon> doors, obstacles;
+};
+
+Result<Setup> MakeSetup(const Flags& flags) {
+  Setup setup;
+  if (!flags.scene.empty()) {
+    VANTAGE_ASSIGN_OR_RETURN(const Scene scene, LoadScene(flags.scene, flags.data));
+    VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("linking", setup.linking));
+    VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("tracks", setup.tracks));
+    setup.doors = scene.doors;
+    setup.obstacles = scene.obstacles;
+  }
+  flags.linking.ApplyTo(setup.linking);
+  flags.tracks.ApplyTo(setup.tracks);
+  return setup;
+}
+
+void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result, bool as_json) {
+  const LinkingReport& linking = result.report.linking;
+  std::int64_t positions = 0;
+  std::int64_t inferred = 0;
+  for (const Track& track : result.tracks) {
+    positions += std::ssize(track.points);
+    for (const TrackPoint& point : track.points) inferred += point.inferred ? 1 : 0;
+  }
+  if (as_json) {
+    const nlohmann::ordered_json json = {{"frames", maps.frame_count()},
+                                         {"columns", maps.grid.columns},
+                                         {"rows", maps.grid.rows},
+                                         {"paths", linking.paths},
+                                         {"cost", linking.cost},
+                                         {"tracks", result.tracks.size()},
+                                         {"dropped_paths", result.report.dropped_paths},
+                                         {"positions", positions},
+                                         {"inferred", inferred},
+                                         {"seconds", linking.seconds}};
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  PrintTable({{"frames", fmt::to_string(maps.frame_count())},
+              {"grid", fmt::format("{} x {} cells of {} m", maps.grid.columns, maps.grid.rows,
+                                   maps.grid.cell_m)},
+              {"paths", fmt::format("{}  (cost {:.3f})", linking.paths, linking.cost)},
+              {"tracks", fmt::format("{}  ({} paths outside the area or too short)",
+                                     result.tracks.size(), result.report.dropped_paths)},
+              {"positions", fmt::format("{}  ({} inferred)", positions, inferred)},
+              {"linking", fmt::format("{:.2f} s", linking.seconds)}});
+}
+
+Status Run(const Flags& flags, const CommonFlags& common) {
+  VANTAGE_ASSIGN_OR_RETURN(const Setup setup, MakeSetup(flags));
+  // Staged before the work, so that an output that cannot be written fails at once.
+  VANTAGE_ASSIGN_OR_RETURN(StagedFile output, StagedFile::Create(flags.output));
+  VANTAGE_ASSIGN_OR_RETURN(const OccupancyMaps maps, ReadMaps(flags.maps));
+  VANTAGE_ASSIGN_OR_RETURN(const LinkMapsResult result,
+                           LinkMaps(maps, setup.linking, setup.tracks, setup.doors, setup.obstacles,
+                                    MakeRunControl(common, "link", "steps")));
+  VANTAGE_RETURN_IF_ERROR(WriteTracks(output.temporary(), result.tracks, maps.frames_per_second));
+  VANTAGE_RETURN_IF_ERROR(output.Commit());
+  PrintReport(maps, result, common.json);
+  return {};
+}
+
+}  // namespace
+
+Command LinkCommand() {
+  return {
+      .name = "link",
+      .summary = "Tracks from occupancy maps: the optimal set of paths",
+      .define = [](CLI::App& app) -> Action {
+        const auto flags = std::make_shared<Flags>();
+        app.add_option("maps", flags->maps, "Occupancy maps (HDF5)")->type_name("FILE")->required();
+        app.add_option("-o,--output", flags->output, "File of tracks to write (CSV)")
+            ->type_name("FILE")
+            ->required();
+        app.add_option("--scene", flags->scene,
+                       "Scene file whose doors, obstacles and tables [linking] and [tracks] "
+                       "apply; flags win over its tables")
+            ->type_name("FILE");
+        app.add_option("--data", flags->data,
+                       "Folder that paths in the scene are relative to; default: the scene's own")
+            ->type_name("DIR");
+        flags->linking = AddOptionFlags(app, LinkingOptions{}, "", "Linking");
+        flags->tracks = AddOptionFlags(app, TrackOptions{}, "", "Tracks");
+        return [flags](const CommonFlags& common) { return Run(*flags, common); };
+      }};
+}
+
+}  // namespace vantage::app
