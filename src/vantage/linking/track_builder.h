@@ -19,7 +19,7 @@ struct TrackOptions {
   double support = 0.5;
   /// Half width of the window in which positions are smoothed by a weighted straight line,
   /// 0 <= smoothing_secs <= 60; 0 turns smoothing off.
-  double smoothing_secs = 0.5;
+  double smoothing_secs = 0.7;
   /// Tracks that are seen for less than this are dropped, 0 <= min_length_secs.
   double min_length_secs = 1.0;
 };
