@@ -7,12 +7,19 @@
 #include <hdf5.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <random>
 
 #include "vantage/base/file.h"
 #include "vantage/base/test_support.h"
+
+#ifdef __SANITIZE_ADDRESS__
+/// HDF5 asks for absurd amounts of memory when a file is damaged and copes with getting none; the
+/// address sanitizer would end the program instead.
+extern "C" const char* __asan_default_options() { return "allocator_may_return_null=1"; }
+#endif
 
 namespace vantage {
 namespace {
@@ -121,19 +128,23 @@ TEST(MapFile, TruncatedAndForeignFilesAreRefused) {
   }
 }
 
-TEST(MapFile, DamagedBytesNeverCrashTheReader) {
+TEST(MapFileDeathTest, DamagedBytesNeverCrashTheReader) {
   const TemporaryFolder folder;
   ASSERT_TRUE(WriteMaps(folder / "maps.h5", SomeMaps(4)));
   const std::string bytes = *ReadTextFile(folder / "maps.h5");
-  std::mt19937 random(8);
-  int refused = 0;
-  for (int round = 0; round < 200; ++round) {
-    std::string damaged = bytes;
-    for (int k = 0; k < 8; ++k) damaged[random() % damaged.size()] = static_cast<char>(random());
-    std::ofstream(folder / "damaged.h5", std::ios::binary) << damaged;
-    refused += !ReadMaps(folder / "damaged.h5");
-  }
-  EXPECT_GT(refused, 20);
+  // In a process of its own: HDF5 itself loses some memory on damaged files.
+  const auto read_damaged = [&] {
+    std::mt19937 random(8);
+    int refused = 0;
+    for (int round = 0; round < 200; ++round) {
+      std::string damaged = bytes;
+      for (int k = 0; k < 8; ++k) damaged[random() % damaged.size()] = static_cast<char>(random());
+      std::ofstream(folder / "damaged.h5", std::ios::binary) << damaged;
+      refused += !ReadMaps(folder / "damaged.h5");
+    }
+    std::_Exit(refused > 20 ? 0 : 1);
+  };
+  EXPECT_EXIT(read_damaged(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(MapFile, MissingPartsAreNamed) {

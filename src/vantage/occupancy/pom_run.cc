@@ -8,11 +8,11 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
 #include "vantage/base/file.h"
 #include "vantage/base/parallel.h"
+#include "vantage/video/picture.h"
 
 namespace vantage {
 namespace fs = std::filesystem;
@@ -32,20 +32,13 @@ std::vector<std::int64_t> FrameNumbers(const PomFile& file) {
 }
 
 Result<cv::Mat> ReadMask(const fs::path& path, ImageSize size) {
-  VANTAGE_ASSIGN_OR_RETURN(std::string bytes, ReadTextFile(path));
-  cv::Mat picture, mask;
-  try {
-    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data());
-    if (!bytes.empty()) picture = cv::imdecode(encoded, cv::IMREAD_COLOR);
-    if (picture.empty()) return Fail("{}: is not a picture, or is damaged", path.string());
-    cv::transform(picture, mask, cv::Matx13f(1.0F / 3, 1.0F / 3, 1.0F / 3));
-  } catch (const cv::Exception& error) {
-    return Fail("{}: the picture is damaged: {}", path.string(), error.err);
-  }
-  if (mask.cols != size.width || mask.rows != size.height) {
+  VANTAGE_ASSIGN_OR_RETURN(const cv::Mat picture, internal::ReadPicture(path));
+  if (picture.cols != size.width || picture.rows != size.height) {
     return Fail("{}: the picture is {} x {} px; the configuration says {} x {}", path.string(),
-                mask.cols, mask.rows, size.width, size.height);
+                picture.cols, picture.rows, size.width, size.height);
   }
+  cv::Mat mask;
+  cv::transform(picture, mask, cv::Matx13f(1.0F / 3, 1.0F / 3, 1.0F / 3));
   return mask;
 }
 
