@@ -114,11 +114,13 @@ Command OccupancyCommand() {
                            "The maps to write, HDF5; with --pom the folder that its result files "
                            "are relative to instead")
                 ->type_name("PATH");
-            return [flags](const CommonFlags& common) -> Status {
-              if (!flags->pom.empty()) return RunPomFile(*flags, common);
-              if (!flags->scene.given()) return Fail("name a scene file, or give --pom FILE");
-              if (flags->output.empty()) return Fail("-o is missing: name the file of maps to write");
-              return RunScene(*flags, common);
+            app.parse_complete_callback([flags] {
+              if (!flags->pom.empty()) return;
+              if (!flags->scene.given()) throw CLI::RequiredError("A scene file or --pom");
+              if (flags->output.empty()) throw CLI::RequiredError("--output");
+            });
+            return [flags](const CommonFlags& common) {
+              return flags->pom.empty() ? RunScene(*flags, common) : RunPomFile(*flags, common);
             };
           }};
 }

@@ -26,11 +26,12 @@ struct Outcome {
   std::string out, err;
 };
 
-Outcome RunProgram(const std::string& arguments) {
+/// `shell_setup` runs first in the shell that becomes the program.
+Outcome RunProgram(const std::string& arguments, const std::string& shell_setup = ":") {
   const TemporaryFolder folder;
-  const std::string command = fmt::format("'{}' {} >'{}' 2>'{}' </dev/null", VANTAGE_PROGRAM,
-                                          arguments, (folder / "out").string(),
-                                          (folder / "err").string());
+  const std::string command =
+      fmt::format("{}; exec '{}' {} >'{}' 2>'{}' </dev/null", shell_setup, VANTAGE_PROGRAM, arguments,
+                  (folder / "out").string(), (folder / "err").string());
   const int status = std::system(command.c_str());
   Outcome outcome;
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -50,12 +51,12 @@ std::vector<std::string> Entries(const std::filesystem::path& folder) {
   return names;
 }
 
-/// A scene that a test spoils: one camera 8 m up that looks down on a person who walks across,
+/// A scene that a test spoils: one camera 10 m up that looks down on a person who walks across,
 /// as ready masks of 160 x 120 pixels.
 struct SmallScene {
   TemporaryFolder folder;
   std::string camera = R"(
-[cameras.pinhole]
+[cameras.calibration.pinhole]
 size_px = [160, 120]
 focal_px = [120.0, 120.0]
 center_px = [79.5, 59.5]
@@ -64,20 +65,20 @@ translation_m = [0.0, 4.8, 10.4]
 )";
   std::string area = "[[-3.0, -2.0], [3.0, -2.0], [3.0, 4.0], [-3.0, 4.0]]";
   std::string source = R"({ masks = "masks/%06d.png" })";
-  std::string more;
+  std::string more;  // further tables
 
   SmallScene() {
     std::filesystem::create_directories(folder / "masks");
     for (int frame = 0; frame < 20; ++frame) {
       cv::Mat mask(120, 160, CV_8UC1, cv::Scalar(0));
-      cv::rectangle(mask, cv::Rect(40 + 3 * frame, 45, 10, 22), cv::Scalar(255), cv::FILLED);
+      cv::rectangle(mask, cv::Rect(48 + 3 * frame, 92, 7, 13), cv::Scalar(255), cv::FILLED);
       cv::imwrite((folder / fmt::format("masks/{:06d}.png", frame)).string(), mask);
     }
   }
   std::string Write() const {
     const std::string text = fmt::format(
         "name = \"small\"\nframes_per_second = 10.0\n[area]\npolygon = {}\n[grid]\ncell = 0.5\n"
-        "extension = 1.0\n[person]\nwidth = 0.6\n{}\n[[cameras]]\nname = \"one\"\nsource = {}\n{}",
+        "extension = 1.0\n[person]\nwidth = 0.8\n{}\n[[cameras]]\nname = \"one\"\nsource = {}\n{}",
         area, more, source, camera);
     EXPECT_TRUE(WriteTextFile(folder / "scene.toml", text));
     return (folder / "scene.toml").string();
@@ -122,7 +123,7 @@ TEST(Program, TracksEvaluatesAndRendersOnePerson) {
       nlohmann::json::parse(ReadTextFile(scene.out() / "summary.json").value_or("{}"));
   EXPECT_EQ(summary["counts"]["frames"], 20);
   EXPECT_EQ(summary["counts"]["tracks"], 1);
-  EXPECT_EQ(summary["options"]["person"]["width"], 0.6);
+  EXPECT_EQ(summary["options"]["person"]["width"], 0.8);
 
   const std::string tracks = (scene.out() / "tracks.csv").string();
   const Outcome evaluation =
@@ -243,6 +244,89 @@ TEST(HostileScene, UnwritableOutput) {
   ExpectOneLine(RunProgram(fmt::format("track '{}' -o /dev/null/out --quiet", path)), 1, "/dev/null");
   ExpectOneLine(RunProgram(fmt::format("track '{0}' -o '{0}' --quiet", path)), 1, "scene.toml");
 }
+
+/// A limit on the size of files (in blocks of 512 bytes), its signal ignored, fails like a full disk: in
+/// the middle of a write.
+std::string FullDiskAfter(int blocks) { return fmt::format("trap '' XFSZ; ulimit -f {}", blocks); }
+
+TEST(HostileScene, FullDisk) {
+  const SmallScene scene;
+  const std::string path = scene.Write();
+  const std::string out = scene.out().string();
+  ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet", path, out), FullDiskAfter(1)), 1,
+                "cannot be written");
+  ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet --save-maps", path, out),
+                           FullDiskAfter(8)),
+                1, "maps");
+  ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet --save-masks", path, out),
+                           FullDiskAfter(1)),
+                1, "cannot be written");
+  EXPECT_EQ(Entries(scene.out()), std::vector<std::string>());
+
+  ASSERT_EQ(scene.Track().status, 0);
+  ExpectOneLine(RunProgram(fmt::format("render '{}' -o '{}/v.mp4' --quiet", out, out),
+                           FullDiskAfter(8)),
+                1, "v.mp4");
+  EXPECT_EQ(Entries(scene.out()), (std::vector<std::string>{"summary.json", "tracks.csv"}));
+}
+
+// --- The other commands, each with input that is missing, broken or of another kind ------------------
+
+struct HostileCase {
+  const char* name;
+  const char* arguments;  // {} is a folder with good.png, text.txt, tracks.csv, empty
+  int status;
+  const char* part;
+};
+void PrintTo(const HostileCase& hostile, std::ostream* stream) { *stream << hostile.name; }
+
+class HostileCommand : public ::testing::TestWithParam<HostileCase> {};
+
+TEST_P(HostileCommand, GivesOneLineAndLeavesNothing) {
+  const TemporaryFolder folder;
+  cv::imwrite((folder / "good.png").string(), cv::Mat::zeros(20, 30, CV_8UC3));
+  std::ofstream(folder / "text.txt") << "neither this nor that\n";
+  std::ofstream(folder / "empty").flush();
+  std::ofstream(folder / "tracks.csv") << "frame,id,x,y\n0,1,1.0,2.0\n";
+  std::ofstream(folder / "nan.csv") << "frame,id,x,y\n0,1,nan,2.0\n";
+  std::ofstream(folder / "room.pom") << "ROOM 10 10 1 1\nRECTANGLE 0 0 0 0 99 99\nPROCESS 0 1\n";
+  const std::vector<std::string> before = Entries(folder.path());
+  const HostileCase& hostile = GetParam();
+  ExpectOneLine(RunProgram(fmt::format(fmt::runtime(hostile.arguments), folder.path().string())),
+                hostile.status, hostile.part);
+  EXPECT_EQ(Entries(folder.path()), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Program, HostileCommand,
+    ::testing::Values(
+        HostileCase{"BackgroundMissing", "background {0}/none.avi -o {0}/out", 1, "none.avi"},
+        HostileCase{"BackgroundEmpty", "background {0}/empty -o {0}/out", 1, "empty"},
+        HostileCase{"BackgroundText", "background {0}/text.txt -o {0}/out", 1, "text.txt"},
+        HostileCase{"BackgroundUnwritable", "background {0}/good.png -o /dev/null/out", 1, ""},
+        HostileCase{"BackgroundNan", "background {0}/good.png -o {0}/out --alpha nan", 2, "alpha"},
+        HostileCase{"OccupancyNothing", "occupancy -o {0}/maps.h5", 2, ""},
+        HostileCase{"OccupancyMissing", "occupancy {0}/none.toml -o {0}/maps.h5", 1, "none.toml"},
+        HostileCase{"OccupancyText", "occupancy {0}/text.txt -o {0}/maps.h5", 1, "text.txt"},
+        HostileCase{"PomMissing", "occupancy --pom {0}/none.pom", 1, "none.pom"},
+        HostileCase{"PomText", "occupancy --pom {0}/text.txt", 1, "text.txt"},
+        HostileCase{"PomRectangleOutside", "occupancy --pom {0}/room.pom", 1, "room.pom"},
+        HostileCase{"LinkMissing", "link {0}/none.h5 -o {0}/t.csv", 1, "none.h5"},
+        HostileCase{"LinkText", "link {0}/text.txt -o {0}/t.csv", 1, "text.txt"},
+        HostileCase{"LinkEmpty", "link {0}/empty -o {0}/t.csv", 1, "empty"},
+        HostileCase{"LinkDepth", "link {0}/none.h5 -o {0}/t.csv --depth 11", 2, "depth"},
+        HostileCase{"EvaluateMissing", "evaluate tracks --truth {0}/none.csv {0}/tracks.csv", 1,
+                    "none.csv"},
+        HostileCase{"EvaluateNan", "evaluate tracks --truth {0}/tracks.csv {0}/nan.csv", 1,
+                    "nan.csv:2"},
+        HostileCase{"EvaluateText", "evaluate tracks --truth {0}/text.txt {0}/tracks.csv", 1,
+                    "text.txt:1"},
+        HostileCase{"EvaluateThreshold",
+                    "evaluate tracks --truth {0}/tracks.csv {0}/tracks.csv --threshold -1", 2,
+                    "threshold"},
+        HostileCase{"RenderMissing", "render {0}/none -o {0}/v.mp4", 1, "none"},
+        HostileCase{"RenderNoResult", "render {0} -o {0}/v.mp4", 1, "summary.json"}),
+    [](const auto& hostile) { return std::string(hostile.param.name); });
 
 }  // namespace
 }  // namespace vantage
