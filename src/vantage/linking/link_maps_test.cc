@@ -80,7 +80,7 @@ TEST(LinkMaps, ObstaclesAreNotWalkedThrough) {
   }
   const std::vector<Polygon> wall = {Polygon::Rectangle({5, 0}, {6, 5}).value()};
   const auto result =
-      LinkMaps(maps, {.birth_cost = 0}, {.smoothing_secs = 0, .min_length_secs = 0}, {}, wall);
+      LinkMaps(maps, {.birth_cost = 0, .movement_cost = 0}, {.smoothing_secs = 0, .min_length_secs = 0}, {}, wall);
   ASSERT_TRUE(result);
   for (const Track& track : result->tracks) {
     for (const TrackPoint& point : track.points) EXPECT_FALSE(point.x_m > 5.1 && point.x_m < 5.9);

@@ -60,7 +60,7 @@ LinkingResult Link(const LinkingProblem& problem, const LinkingOptions& options)
 TEST(Linker, FollowsOnePersonThroughAGap) {
   Corridor corridor(5, 5);
   for (const int frame : {0, 1, 3, 4}) corridor.Set(frame, frame, 0.99F);
-  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 5});
+  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 5, .movement_cost = 0});
   ASSERT_THAT(result.paths, SizeIs(1));
   EXPECT_EQ(result.paths[0].first_frame, 0);
   EXPECT_THAT(result.paths[0].cells, ElementsAre(0, 1, 2, 3, 4));
