@@ -13,8 +13,8 @@
 #include "vantage/base/result.h"
 #include "vantage/base/run_control.h"
 
-/// The program is a table of commands, one file each. A command declares its flags on a CLI::App and
-/// returns what to do once they are parsed.
+/// The program is a table of commands, one file each. A command declares its flags on a CLI::App
+/// and returns what to do once they are parsed.
 
 namespace vantage::app {
 
@@ -42,8 +42,8 @@ Command OccupancyCommand();
 Command RenderCommand();
 Command TrackCommand();
 
-/// The flags of one options struct. Flags given on the command line win over what a scene file says, so
-/// a command that reads a scene calls `Apply` again after binding its tables.
+/// The flags of one options struct. Flags given on the command line win over what a scene file
+/// says, so a command that reads a scene calls `Apply` again after binding its tables.
 class OptionFlags {
  public:
   using Visit = std::function<void(OptionVisitor&)>;
@@ -52,8 +52,8 @@ class OptionFlags {
   OptionFlags(OptionFlags&&) = default;
   OptionFlags& operator=(OptionFlags&&) = default;
 
-  /// Adds one flag per field, "--<prefix><name>" with '_' as '-', with help, unit, rule and default.
-  /// Values out of range are usage errors (exit status 2).
+  /// Adds one flag per field, "--<prefix><name>" with '_' as '-', with help, unit, rule and
+  /// default. Values out of range are usage errors (exit status 2).
   static OptionFlags Add(CLI::App& app, const Visit& visit, const std::string& prefix,
                          const std::string& group);
 

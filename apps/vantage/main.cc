@@ -20,15 +20,17 @@ constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
 std::vector<Command> Commands() {
-  return {TrackCommand(),    BackgroundCommand(), OccupancyCommand(),
-          LinkCommand(),     EvaluateCommand(),   RenderCommand()};
+  return {TrackCommand(), BackgroundCommand(), OccupancyCommand(),
+          LinkCommand(),  EvaluateCommand(),   RenderCommand()};
 }
 
 int Run(int argc, char** argv) {
-  // The library's own errors say what is wrong; the log lines of OpenCV and FFmpeg would only repeat it.
+  // The library's own errors say what is wrong; the log lines of OpenCV and FFmpeg would only
+  // repeat it.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
-  CLI::App app("Vantage: ground-plane tracks of people from several calibrated cameras.", "vantage");
+  CLI::App app("Vantage: ground-plane tracks of people from several calibrated cameras.",
+               "vantage");
   app.set_version_flag("--version", std::string("vantage ") + kVersion);
   app.require_subcommand(1);
   CommonFlags common;

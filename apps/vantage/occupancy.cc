@@ -46,16 +46,16 @@ Status RunScene(const Flags& flags, const CommonFlags& common) {
     fmt::print("{}\n", json.dump(2));
     return {};
   }
-  PrintTable({{"frames", fmt::to_string(report.frames)},
-              {"cameras", fmt::to_string(setup.scene.cameras.size())},
-              {"cells", fmt::format("{} x {} of {} m", result.maps.grid.columns,
-                                    result.maps.grid.rows, result.maps.grid.cell_m)},
-              {"area unseen", fmt::format("{} of {} cells", report.unseen_area_cells,
-                                          report.area_cells)},
-              {"iterations", fmt::format("{:.1f} per frame", report.mean_iterations)},
-              {"frames not converged", fmt::to_string(report.frames_not_converged)},
-              {"seconds", fmt::format("{:.2f}", seconds)},
-              {"maps", flags.output.string()}});
+  PrintTable(
+      {{"frames", fmt::to_string(report.frames)},
+       {"cameras", fmt::to_string(setup.scene.cameras.size())},
+       {"cells", fmt::format("{} x {} of {} m", result.maps.grid.columns, result.maps.grid.rows,
+                             result.maps.grid.cell_m)},
+       {"area unseen", fmt::format("{} of {} cells", report.unseen_area_cells, report.area_cells)},
+       {"iterations", fmt::format("{:.1f} per frame", report.mean_iterations)},
+       {"frames not converged", fmt::to_string(report.frames_not_converged)},
+       {"seconds", fmt::format("{:.2f}", seconds)},
+       {"maps", flags.output.string()}});
   return {};
 }
 
@@ -99,9 +99,10 @@ Command OccupancyCommand() {
             const auto flags = std::make_shared<Flags>();
             CLI::Option* scene = flags->scene.Define(app);
             CLI::Option* masks =
-                app.add_option("--masks", flags->masks,
-                               "Folder of ready masks, MASKS/CAMERA/000000.png ..., numbered by the "
-                               "scene's frames, to use in place of the cameras' own sources")
+                app.add_option(
+                       "--masks", flags->masks,
+                       "Folder of ready masks, MASKS/CAMERA/000000.png ..., numbered by the "
+                       "scene's frames, to use in place of the cameras' own sources")
                     ->type_name("DIR")
                     ->needs(scene);
             app.add_option("--pom", flags->pom,

@@ -54,7 +54,8 @@ class FlagAdder final : public OptionVisitor {
     CLI::Option* option = AddValue(info, "NUMBER");
     option->check([range](const std::string& text) -> std::string {
       T number{};
-      if (!CLI::detail::lexical_cast(text, number)) return fmt::format("'{}' is not a number", text);
+      if (!CLI::detail::lexical_cast(text, number))
+        return fmt::format("'{}' is not a number", text);
       if (range.Contains(static_cast<double>(number))) return "";
       return fmt::format("is {}; it must be {}", text, range.Text());
     });

@@ -17,9 +17,9 @@ namespace vantage {
 namespace {
 
 using testing::DataFolder;
-using testing::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
+using testing::TemporaryFolder;
 
 struct Outcome {
   int status = -1;
@@ -30,8 +30,8 @@ struct Outcome {
 Outcome RunProgram(const std::string& arguments, const std::string& shell_setup = ":") {
   const TemporaryFolder folder;
   const std::string command =
-      fmt::format("{}; exec '{}' {} >'{}' 2>'{}' </dev/null", shell_setup, VANTAGE_PROGRAM, arguments,
-                  (folder / "out").string(), (folder / "err").string());
+      fmt::format("{}; exec '{}' {} >'{}' 2>'{}' </dev/null", shell_setup, VANTAGE_PROGRAM,
+                  arguments, (folder / "out").string(), (folder / "err").string());
   const int status = std::system(command.c_str());
   Outcome outcome;
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -141,8 +141,8 @@ TEST(Program, SameBytesWhateverTheThreadCount) {
   const SmallScene scene;
   ASSERT_EQ(scene.Track().status, 0);
   const std::string first = ReadTextFile(scene.out() / "tracks.csv").value();
-  const Outcome again = RunProgram(fmt::format("track '{}' -o '{}' --quiet --threads 3", scene.Write(),
-                                               (scene.folder / "again").string()));
+  const Outcome again = RunProgram(fmt::format("track '{}' -o '{}' --quiet --threads 3",
+                                               scene.Write(), (scene.folder / "again").string()));
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(ReadTextFile(scene.folder / "again/tracks.csv").value(), first);
 }
@@ -163,16 +163,17 @@ TEST(Program, StagesAloneGiveWhatTheWholeWayGives) {
 TEST(Program, FlagsWinOverTheScene) {
   SmallScene scene;
   scene.more = "[occupancy]\nvariance = 0.002";
-  const Outcome outcome = RunProgram(fmt::format(
-      "track '{}' -o '{}' --quiet --json --occupancy-variance 0.004 --person-width 0.7",
-      scene.Write(), scene.out().string()));
+  const Outcome outcome = RunProgram(
+      fmt::format("track '{}' -o '{}' --quiet --json --occupancy-variance 0.004 --person-width 0.7",
+                  scene.Write(), scene.out().string()));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto options = nlohmann::json::parse(outcome.out)["options"];
   EXPECT_EQ(options["occupancy"]["variance"], 0.004);
   EXPECT_EQ(options["person"]["width"], 0.7);
 }
 
-// --- Hostile input: one clear line, status 1, and nothing left behind ---------------------------------
+// --- Hostile input: one clear line, status 1, and nothing left behind
+// ---------------------------------
 
 void ExpectFailure(const SmallScene& scene, const std::string& part) {
   ExpectOneLine(scene.Track(), 1, part);
@@ -181,8 +182,9 @@ void ExpectFailure(const SmallScene& scene, const std::string& part) {
 
 TEST(HostileScene, MissingFiles) {
   const TemporaryFolder folder;
-  ExpectOneLine(RunProgram(fmt::format("track '{0}/none.toml' -o '{0}/out'", folder.path().string())),
-                1, "none.toml: no such file");
+  ExpectOneLine(
+      RunProgram(fmt::format("track '{0}/none.toml' -o '{0}/out'", folder.path().string())), 1,
+      "none.toml: no such file");
   SmallScene scene;
   scene.source = R"({ video = "none.avi" })";
   ExpectFailure(scene, "none.avi");
@@ -241,20 +243,21 @@ TEST(HostileScene, AreaOutsideEveryView) {
 TEST(HostileScene, UnwritableOutput) {
   const SmallScene scene;
   const std::string path = scene.Write();
-  ExpectOneLine(RunProgram(fmt::format("track '{}' -o /dev/null/out --quiet", path)), 1, "/dev/null");
+  ExpectOneLine(RunProgram(fmt::format("track '{}' -o /dev/null/out --quiet", path)), 1,
+                "/dev/null");
   ExpectOneLine(RunProgram(fmt::format("track '{0}' -o '{0}' --quiet", path)), 1, "scene.toml");
 }
 
-/// A limit on the size of files (in blocks of 512 bytes), its signal ignored, fails like a full disk: in
-/// the middle of a write.
+/// A limit on the size of files (in blocks of 512 bytes), its signal ignored, fails like a full
+/// disk: in the middle of a write.
 std::string FullDiskAfter(int blocks) { return fmt::format("trap '' XFSZ; ulimit -f {}", blocks); }
 
 TEST(HostileScene, FullDisk) {
   const SmallScene scene;
   const std::string path = scene.Write();
   const std::string out = scene.out().string();
-  ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet", path, out), FullDiskAfter(1)), 1,
-                "cannot be written");
+  ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet", path, out), FullDiskAfter(1)),
+                1, "cannot be written");
   ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet --save-maps", path, out),
                            FullDiskAfter(8)),
                 1, "maps");
@@ -264,13 +267,14 @@ TEST(HostileScene, FullDisk) {
   EXPECT_EQ(Entries(scene.out()), std::vector<std::string>());
 
   ASSERT_EQ(scene.Track().status, 0);
-  ExpectOneLine(RunProgram(fmt::format("render '{}' -o '{}/v.mp4' --quiet", out, out),
-                           FullDiskAfter(8)),
-                1, "v.mp4");
+  ExpectOneLine(
+      RunProgram(fmt::format("render '{}' -o '{}/v.mp4' --quiet", out, out), FullDiskAfter(8)), 1,
+      "v.mp4");
   EXPECT_EQ(Entries(scene.out()), (std::vector<std::string>{"summary.json", "tracks.csv"}));
 }
 
-// --- The other commands, each with input that is missing, broken or of another kind ------------------
+// --- The other commands, each with input that is missing, broken or of another kind
+// ------------------
 
 struct HostileCase {
   const char* name;

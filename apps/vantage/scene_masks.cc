@@ -49,8 +49,7 @@ Result<SceneMaskWriter> SceneMaskWriter::Create(const Scene& scene,
 Status SceneMaskWriter::Write(FrameIndex frame, const std::vector<cv::Mat>& masks) const {
   for (std::size_t camera = 0; camera < masks.size(); ++camera) {
     if (masks[camera].empty()) continue;
-    VANTAGE_RETURN_IF_ERROR(
-        WriteMask(folder_.temporary() / names_[camera], frame, masks[camera]));
+    VANTAGE_RETURN_IF_ERROR(WriteMask(folder_.temporary() / names_[camera], frame, masks[camera]));
   }
   return {};
 }

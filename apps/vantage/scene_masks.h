@@ -32,8 +32,8 @@ class SceneMaskWriter {
   std::vector<std::string> names_;
 };
 
-/// Makes every camera of the scene read the masks of such a folder in place of its own source; their
-/// numbers are the scene's frames.
+/// Makes every camera of the scene read the masks of such a folder in place of its own source;
+/// their numbers are the scene's frames.
 Status UseMasks(Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace vantage::app

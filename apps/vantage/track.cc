@@ -54,10 +54,9 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
                                               static_cast<double>(maps.area_cells))});
   }
   rows.push_back({"tracks", fmt::to_string(result.tracks.size())});
-  rows.push_back({"positions", fmt::format("{}  ({} inferred), {:.1f} people per frame", positions,
-                                           inferred,
-                                           static_cast<double>(positions) /
-                                               static_cast<double>(maps.frames))});
+  rows.push_back({"positions",
+                  fmt::format("{}  ({} inferred), {:.1f} people per frame", positions, inferred,
+                              static_cast<double>(positions) / static_cast<double>(maps.frames))});
   rows.push_back({"reading", rate(maps.read_secs)});
   rows.push_back({"background", rate(maps.background_secs)});
   rows.push_back({"occupancy", rate(maps.occupancy_secs)});
@@ -69,8 +68,8 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
 Status Run(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const SceneSetup setup, flags.scene.Load());
   const std::filesystem::path output = flags.output;
-  // All outputs are staged first: an unwritable folder fails now, not after minutes of work, and the
-  // files appear together at the end.
+  // All outputs are staged first: an unwritable folder fails now, not after minutes of work, and
+  // the files appear together at the end.
   std::vector<StagedFile> staged;
   for (const char* name : {"tracks.csv", "summary.json", "maps.h5"}) {
     VANTAGE_ASSIGN_OR_RETURN(StagedFile file, StagedFile::Create(output / name));
@@ -96,8 +95,8 @@ Status Run(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const nlohmann::ordered_json summary,
                            Summarize(request, setup.scene, setup.options, result));
 
-  VANTAGE_RETURN_IF_ERROR(WriteTracks(staged[0].temporary(), result.tracks,
-                                      setup.scene.frames_per_second));
+  VANTAGE_RETURN_IF_ERROR(
+      WriteTracks(staged[0].temporary(), result.tracks, setup.scene.frames_per_second));
   VANTAGE_RETURN_IF_ERROR(WriteTextFile(staged[1].temporary(), summary.dump(2) + "\n"));
   if (flags.save_maps) VANTAGE_RETURN_IF_ERROR(WriteMaps(staged[2].temporary(), result.maps));
   if (masks) VANTAGE_RETURN_IF_ERROR(masks->Finish());

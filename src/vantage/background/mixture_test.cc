@@ -301,9 +301,8 @@ TEST(Mixture, OptionsAreChecked) {
             "background.gaussians is 9; it must be between 1 and 8");
   EXPECT_EQ(message([](MixtureOptions& o) { o.alpha = 0; }),
             "background.alpha is 0; it must be above 0 and at most 1");
-  EXPECT_EQ(
-      message([](MixtureOptions& o) { o.absorb_weight = 0.2; }),
-      "background.absorb_weight is 0.2; it must be at least 1 / background_share - 1 = 1");
+  EXPECT_EQ(message([](MixtureOptions& o) { o.absorb_weight = 0.2; }),
+            "background.absorb_weight is 0.2; it must be at least 1 / background_share - 1 = 1");
   EXPECT_EQ(message([](MixtureOptions& o) { o.luv.initial = 1; }),
             "background.luv_initial_sigma is 1; it must be at least luv_min_sigma = 5");
   EXPECT_THAT(message([](MixtureOptions& o) { o.match_sigmas = std::nan(""); }),

@@ -97,7 +97,7 @@ Result<std::string> Sha256OfFile(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return Fail("{}: cannot be opened: {}", path.string(), Reason());
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
-                                                                       &EVP_MD_CTX_free);
+                                                                        &EVP_MD_CTX_free);
   if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1) {
     return Fail("SHA-256 is not available in this build of OpenSSL");
   }

@@ -46,8 +46,8 @@ class StagedFile {
   std::filesystem::path temporary_, final_;
 };
 
-/// The same for a folder of outputs (e.g. masks, one picture a frame). `final_path` may exist only if
-/// it is empty or `replace` says that its earlier content may go.
+/// The same for a folder of outputs (e.g. masks, one picture a frame). `final_path` may exist only
+/// if it is empty or `replace` says that its earlier content may go.
 class StagedDirectory {
  public:
   static Result<StagedDirectory> Create(const std::filesystem::path& final_path, bool replace);

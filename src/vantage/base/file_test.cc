@@ -12,9 +12,9 @@
 namespace vantage {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::MessageOf;
 using testing::TemporaryFolder;
-using ::testing::HasSubstr;
 
 std::ptrdiff_t EntriesIn(const std::filesystem::path& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});

@@ -22,7 +22,8 @@ std::string Range::Text() const {
   std::string text;
   if (has_low) text = fmt::format("{} {}", low_open ? "above" : "at least", low);
   if (has_high) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : " and ", high_open ? "below" : "at most", high);
+    text +=
+        fmt::format("{}{} {}", text.empty() ? "" : " and ", high_open ? "below" : "at most", high);
   }
   return text.empty() ? "a finite number" : text;
 }

@@ -12,8 +12,9 @@
 
 #include "vantage/base/result.h"
 
-/// One list per options struct serves everything that must know its fields: validation, TOML tables,
-/// command-line flags with their help, and the record of a run. A stage writes, beside its struct,
+/// One list per options struct serves everything that must know its fields: validation, TOML
+/// tables, command-line flags with their help, and the record of a run. A stage writes, beside its
+/// struct,
 ///
 ///   void VisitOptions(MixtureOptions& options, OptionVisitor& visitor);
 ///
@@ -70,7 +71,8 @@ class OptionVisitor {
       texts.push_back(text);
     }
     ChoiceIndex(info, index, texts);
-    if (index >= 0 && index < static_cast<int>(texts.size())) value = (names.begin() + index)->second;
+    if (index >= 0 && index < static_cast<int>(texts.size()))
+      value = (names.begin() + index)->second;
   }
 
  protected:

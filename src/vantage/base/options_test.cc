@@ -41,7 +41,8 @@ TEST(Options, MessagesNameFieldValueAndRule) {
   options.side_m = 0;
   EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")), "stage.side is 0; it must be above 0 m");
   options.side_m = std::nan("");
-  EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")), "stage.side is nan; it must be above 0 m");
+  EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")),
+            "stage.side is nan; it must be above 0 m");
   options.side_m = 1;
   options.mode = static_cast<Mode>(7);
   EXPECT_EQ(MessageOf(ValidateOptions(options, "")),

@@ -33,19 +33,19 @@ template <class... Args>
 #define VANTAGE_CONCAT(a, b) VANTAGE_CONCAT_INNER(a, b)
 
 /// Returns the error of a Status or Result expression to the caller.
-#define VANTAGE_RETURN_IF_ERROR(expression)                                                  \
-  do {                                                                                       \
-    if (auto vantage_status = (expression); !vantage_status) {                               \
-      return tl::unexpected<::vantage::Error>(std::move(vantage_status).error());            \
-    }                                                                                        \
+#define VANTAGE_RETURN_IF_ERROR(expression)                                       \
+  do {                                                                            \
+    if (auto vantage_status = (expression); !vantage_status) {                    \
+      return tl::unexpected<::vantage::Error>(std::move(vantage_status).error()); \
+    }                                                                             \
   } while (false)
 
 /// `VANTAGE_ASSIGN_OR_RETURN(const Scene scene, LoadScene(path));`
 #define VANTAGE_ASSIGN_OR_RETURN(declaration, expression) \
   VANTAGE_ASSIGN_OR_RETURN_IMPL(VANTAGE_CONCAT(vantage_result_, __LINE__), declaration, expression)
-#define VANTAGE_ASSIGN_OR_RETURN_IMPL(result, declaration, expression)     \
-  auto result = (expression);                                              \
-  if (!result) {                                                           \
-    return tl::unexpected<::vantage::Error>(std::move(result).error());    \
-  }                                                                        \
+#define VANTAGE_ASSIGN_OR_RETURN_IMPL(result, declaration, expression)  \
+  auto result = (expression);                                           \
+  if (!result) {                                                        \
+    return tl::unexpected<::vantage::Error>(std::move(result).error()); \
+  }                                                                     \
   declaration = std::move(*result)

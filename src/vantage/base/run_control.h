@@ -14,7 +14,8 @@ namespace vantage {
 struct RunControl {
   /// Called from one thread at a time with the units done and the total (0: not known).
   std::function<void(std::int64_t done, std::int64_t total)> progress;
-  /// Set by the caller (e.g. on Ctrl-C): the work returns `Cancelled()` soon after, leaving no output.
+  /// Set by the caller (e.g. on Ctrl-C): the work returns `Cancelled()` soon after, leaving no
+  /// output.
   const std::atomic<bool>* stop = nullptr;
 
   bool Stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }

@@ -17,8 +17,9 @@ namespace vantage::testing {
 inline std::filesystem::path DataFolder() {
   const char* given = std::getenv("VANTAGE_TEST_DATA");
   const std::filesystem::path folder =
-      given != nullptr ? std::filesystem::path(given)
-                       : std::filesystem::path(VANTAGE_SOURCE_DIR).parent_path() / "shared" / "data";
+      given != nullptr
+          ? std::filesystem::path(given)
+          : std::filesystem::path(VANTAGE_SOURCE_DIR).parent_path() / "shared" / "data";
   std::error_code code;
   return std::filesystem::is_directory(folder, code) ? folder : std::filesystem::path();
 }

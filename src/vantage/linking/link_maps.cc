@@ -13,18 +13,18 @@ Result<LinkMapsResult> LinkMaps(const OccupancyMaps& maps, const LinkingOptions&
                                 std::span<const Polygon> obstacles, const RunControl& control) {
   const std::vector<std::uint8_t> access = AccessCells(maps, linking.access, doors);
   const std::vector<std::uint8_t> obstacle = CellsIn(maps.grid, obstacles);
-  VANTAGE_ASSIGN_OR_RETURN(const LinkingResult linked,
-                           LinkPaths({.columns = maps.grid.columns,
-                                      .rows = maps.grid.rows,
-                                      .frames = maps.frame_count(),
-                                      .probability = maps.values,
-                                      .access = access,
-                                      .obstacle = obstacle},
-                                     linking, control));
+  VANTAGE_ASSIGN_OR_RETURN(const LinkingResult linked, LinkPaths({.columns = maps.grid.columns,
+                                                                  .rows = maps.grid.rows,
+                                                                  .frames = maps.frame_count(),
+                                                                  .probability = maps.values,
+                                                                  .access = access,
+                                                                  .obstacle = obstacle},
+                                                                 linking, control));
   LinkMapsResult result;
   VANTAGE_ASSIGN_OR_RETURN(result.tracks, BuildTracks(linked.paths, maps, tracks));
   result.report.linking = linked.report;
-  result.report.dropped_paths = linked.report.paths - static_cast<std::int64_t>(result.tracks.size());
+  result.report.dropped_paths =
+      linked.report.paths - static_cast<std::int64_t>(result.tracks.size());
   return result;
 }
 

@@ -28,14 +28,16 @@ OccupancyMaps EmptyMaps(int columns, int rows, std::int64_t frames) {
 }
 
 void Put(OccupancyMaps& maps, std::int64_t frame, int column, int row, float q) {
-  maps.values[static_cast<std::size_t>(frame * maps.grid.count() + maps.grid.Index(column, row))] = q;
+  maps.values[static_cast<std::size_t>(frame * maps.grid.count() + maps.grid.Index(column, row))] =
+      q;
 }
 
 TEST(Access, BorderIsWhereTheSeenEnds) {
   OccupancyMaps maps = EmptyMaps(5, 4, 1);
   maps.visible[static_cast<std::size_t>(maps.grid.Index(0, 0))] = 0;
   const auto access = AccessCells(maps, AccessRule::kBorder, {});
-  // The hidden corner is none; its inner neighbour (1, 1) is one; (2, 1), (3, 1), (2, 2) ... are not.
+  // The hidden corner is none; its inner neighbour (1, 1) is one; (2, 1), (3, 1), (2, 2) ... are
+  // not.
   const std::vector<std::uint8_t> expected = {0, 1, 1, 1, 1,  //
                                               1, 1, 0, 0, 1,  //
                                               1, 0, 0, 0, 1,  //
@@ -79,8 +81,8 @@ TEST(LinkMaps, ObstaclesAreNotWalkedThrough) {
     if (frame / 2 != 5) Put(maps, frame, frame / 2, 2, 0.95F);  // hidden by the wall
   }
   const std::vector<Polygon> wall = {Polygon::Rectangle({5, 0}, {6, 5}).value()};
-  const auto result =
-      LinkMaps(maps, {.birth_cost = 0, .movement_cost = 0}, {.smoothing_secs = 0, .min_length_secs = 0}, {}, wall);
+  const auto result = LinkMaps(maps, {.birth_cost = 0, .movement_cost = 0},
+                               {.smoothing_secs = 0, .min_length_secs = 0}, {}, wall);
   ASSERT_TRUE(result);
   for (const Track& track : result->tracks) {
     for (const TrackPoint& point : track.points) EXPECT_FALSE(point.x_m > 5.1 && point.x_m < 5.9);

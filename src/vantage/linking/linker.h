@@ -30,9 +30,9 @@ struct LinkingOptions {
   /// Probabilities are clipped to [clip, 1 - clip], 0 < clip < 0.5, before the cost
   /// -log(p / (1 - p)).
   double clip = 1e-6;
-  /// Cost of a move per cell of Euclidean distance, >= 0: people who meet keep to their own, shorter
-  /// ways. 0, as in the paper, leaves identities to chance there. Chosen on the seven views of PETS
-  /// 2009 S2.L1 (cells of 0.5 m, 7 frames per second).
+  /// Cost of a move per cell of Euclidean distance, >= 0: people who meet keep to their own,
+  /// shorter ways. 0, as in the paper, leaves identities to chance there. Chosen on the seven views
+  /// of PETS 2009 S2.L1 (cells of 0.5 m, 7 frames per second).
   double movement_cost = 2;
   /// At most this many paths, >= 0; 0 means any number.
   int max_paths = 0;

@@ -38,8 +38,8 @@ Sample Refine(const OccupancyMaps& maps, std::int64_t frame, CellIndex cell, dou
   return {sum / mass, true};
 }
 
-/// Drops what is not supported at both ends, and puts what is not supported between on straight lines.
-/// Returns the index of the first sample left.
+/// Drops what is not supported at both ends, and puts what is not supported between on straight
+/// lines. Returns the index of the first sample left.
 std::size_t TrimAndInterpolate(std::vector<Sample>& samples) {
   const auto seen = [](const Sample& sample) { return sample.seen; };
   const auto first = std::find_if(samples.begin(), samples.end(), seen);
@@ -63,7 +63,8 @@ std::size_t TrimAndInterpolate(std::vector<Sample>& samples) {
 }
 
 /// Local linear regression with Epanechnikov's kernel over seen samples (W. Cleveland, "Robust
-/// locally weighted regression", 1979, without the robustness); inferred samples follow the line too.
+/// locally weighted regression", 1979, without the robustness); inferred samples follow the line
+/// too.
 std::vector<Vector2d> Smooth(const std::vector<Sample>& samples, double half_width_frames) {
   std::vector<Vector2d> smooth(samples.size());
   const auto reach = static_cast<std::ptrdiff_t>(half_width_frames);
@@ -120,8 +121,8 @@ Result<Tracks> BuildTracks(const std::vector<LinkedPath>& paths, const Occupancy
   for (const LinkedPath& path : paths) {
     std::vector<Sample> samples;
     for (std::size_t i = 0; i < path.cells.size(); ++i) {
-      samples.push_back(Refine(maps, path.first_frame + static_cast<std::int64_t>(i),
-                               path.cells[i], options.support));
+      samples.push_back(Refine(maps, path.first_frame + static_cast<std::int64_t>(i), path.cells[i],
+                               options.support));
     }
     const std::size_t start = TrimAndInterpolate(samples);
     const std::vector<Vector2d> positions_m = Smooth(samples, half_width_frames);

@@ -26,22 +26,23 @@ OccupancyMaps AreaMaps(std::int64_t frames) {
 }
 
 float& Q(OccupancyMaps& maps, std::int64_t frame, int column, int row) {
-  return maps.values[static_cast<std::size_t>(frame * maps.grid.count() +
-                                              maps.grid.Index(column, row))];
+  return maps
+      .values[static_cast<std::size_t>(frame * maps.grid.count() + maps.grid.Index(column, row))];
 }
 
 LinkedPath Straight(const GroundGrid& grid, int frames, int column, int row) {
-  return {.first_frame = 0,
-          .cells = std::vector<CellIndex>(static_cast<std::size_t>(frames), grid.Index(column, row))};
+  return {
+      .first_frame = 0,
+      .cells = std::vector<CellIndex>(static_cast<std::size_t>(frames), grid.Index(column, row))};
 }
 
 TEST(TrackBuilder, PositionIsTheCentreOfMassOfTheCellsAround) {
   OccupancyMaps maps = AreaMaps(1);
   Q(maps, 0, 5, 5) = 0.6F;
   Q(maps, 0, 6, 5) = 0.2F;
-  const Tracks tracks = BuildTracks({Straight(maps.grid, 1, 5, 5)}, maps,
-                                    {.smoothing_secs = 0, .min_length_secs = 0})
-                            .value();
+  const Tracks tracks =
+      BuildTracks({Straight(maps.grid, 1, 5, 5)}, maps, {.smoothing_secs = 0, .min_length_secs = 0})
+          .value();
   ASSERT_EQ(tracks.size(), 1U);
   // Centres at x = 2.75 and 3.25 with weights 3 : 1.
   EXPECT_NEAR(tracks[0].points[0].x_m, 2.875, 1e-6);

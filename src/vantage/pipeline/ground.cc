@@ -33,16 +33,16 @@ Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options)
                 scene.file.string(), scene.grid.cell_m);
   }
   for (const SceneCamera& camera : scene.cameras) {
-    VANTAGE_ASSIGN_OR_RETURN(CameraView view,
-                             BuildView(camera.camera, ground.grid, scene.person, options.visibility,
-                                       options.reduction));
+    VANTAGE_ASSIGN_OR_RETURN(CameraView view, BuildView(camera.camera, ground.grid, scene.person,
+                                                        options.visibility, options.reduction));
     ground.views.push_back(std::move(view));
   }
   ground.visible = VisibleCells(ground.views);
   if (ground.UnseenAreaCells() == ground.AreaCells()) {
-    return Fail("{}: no camera sees any of the area (visibility rule and size of a person "
-                "considered); check the polygon and the calibrations",
-                scene.file.string());
+    return Fail(
+        "{}: no camera sees any of the area (visibility rule and size of a person "
+        "considered); check the polygon and the calibrations",
+        scene.file.string());
   }
   return ground;
 }

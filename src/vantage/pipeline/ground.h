@@ -28,8 +28,8 @@ struct Ground {
   std::int64_t UnseenAreaCells() const;
 };
 
-/// Cuts area and extension into cells. Fails when no cell's centre is inside the area (cells too large
-/// for it) and when no camera sees any cell of the area.
+/// Cuts area and extension into cells. Fails when no cell's centre is inside the area (cells too
+/// large for it) and when no camera sees any cell of the area.
 Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options);
 
 }  // namespace vantage

@@ -28,18 +28,18 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
     if (!source) return Fail("camera {}: {}", camera.name, source.error().message);
     const SourceInfo& info = (*source)->info();
     if (info.size != camera.camera.size()) {
-      return Fail("camera {}: {} has pictures of {} x {} px, its calibration is for {} x {}; give the "
-                  "calibration of these pictures",
-                  camera.name, info.name, info.size.width, info.size.height,
-                  camera.camera.size().width, camera.camera.size().height);
+      return Fail(
+          "camera {}: {} has pictures of {} x {} px, its calibration is for {} x {}; give the "
+          "calibration of these pictures",
+          camera.name, info.name, info.size.width, info.size.height, camera.camera.size().width,
+          camera.camera.size().height);
     }
     subtractors.emplace_back();
     if (info.content == FrameContent::kColor) {
       VANTAGE_ASSIGN_OR_RETURN(subtractors.back(),
                                BackgroundSubtractor::Create(info.size, options));
     }
-    inputs.push_back(
-        {.source = std::move(*source), .offset_frames = camera.source.offset_frames});
+    inputs.push_back({.source = std::move(*source), .offset_frames = camera.source.offset_frames});
   }
   VANTAGE_ASSIGN_OR_RETURN(MultiCameraReader reader,
                            MultiCameraReader::Create(std::move(inputs), scene.first_frame));

@@ -25,7 +25,8 @@ class MaskStream {
   /// Frames of the scene that all sources hold and that the scene asks for; none when not known.
   std::optional<std::int64_t> frame_count() const { return frame_count_; }
 
-  /// The next frame: one mask per camera, empty where a camera has no picture now. False at the end.
+  /// The next frame: one mask per camera, empty where a camera has no picture now. False at the
+  /// end.
   Result<bool> Read(std::vector<cv::Mat>& masks);
 
   /// Time spent, all cameras together as wall-clock.
@@ -36,7 +37,8 @@ class MaskStream {
   }
 
  private:
-  MaskStream(MultiCameraReader reader, int threads) : reader_(std::move(reader)), threads_(threads) {}
+  MaskStream(MultiCameraReader reader, int threads)
+      : reader_(std::move(reader)), threads_(threads) {}
   MultiCameraReader reader_;
   std::vector<std::optional<BackgroundSubtractor>> subtractors_;  // none: delivers masks
   std::vector<cv::Mat> frames_;

@@ -23,7 +23,6 @@ struct RunRequest {
 /// The record of a run (summary.json): version, what was asked for, SHA-256 of every input file,
 /// options of every stage as used, counts, and seconds and frames per second of every stage.
 Result<nlohmann::ordered_json> Summarize(const RunRequest& request, const Scene& scene,
-                                         const StageOptions& options,
-                                         const TrackingResult& result);
+                                         const StageOptions& options, const TrackingResult& result);
 
 }  // namespace vantage

@@ -23,7 +23,9 @@ double SecondsSince(Clock::time_point start) {
 class FrameBatch {
  public:
   FrameBatch(const OccupancySolver& solver, int threads)
-      : solver_(solver), masks_(static_cast<std::size_t>(std::max(threads, 1)) * 4), threads_(threads) {}
+      : solver_(solver),
+        masks_(static_cast<std::size_t>(std::max(threads, 1)) * 4),
+        threads_(threads) {}
 
   bool full() const { return used_ == masks_.size(); }
   std::vector<cv::Mat>& Next() { return masks_[used_++]; }
@@ -37,8 +39,8 @@ class FrameBatch {
     std::vector<Result<SolveReport>> solved(used_);
     ParallelFor(threads_, static_cast<std::int64_t>(used_), [&](std::int64_t i) {
       const auto index = static_cast<std::size_t>(i);
-      solved[index] = solver_.Solve(
-          masks_[index], std::span(maps.values).subspan(start + index * cells, cells));
+      solved[index] = solver_.Solve(masks_[index],
+                                    std::span(maps.values).subspan(start + index * cells, cells));
     });
     for (const Result<SolveReport>& result : solved) {
       if (!result) return tl::unexpected(result.error());
@@ -46,8 +48,8 @@ class FrameBatch {
       report.frames_not_converged += result->converged ? 0 : 1;
       ++report.frames;
     }
-    report.mean_iterations =
-        static_cast<double>(iterations_) / static_cast<double>(std::max<std::int64_t>(report.frames, 1));
+    report.mean_iterations = static_cast<double>(iterations_) /
+                             static_cast<double>(std::max<std::int64_t>(report.frames, 1));
     used_ = 0;
     return {};
   }
@@ -74,7 +76,8 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   VANTAGE_ASSIGN_OR_RETURN(Ground ground, LayOutGround(scene, options.occupancy));
   VANTAGE_ASSIGN_OR_RETURN(const OccupancySolver solver,
                            OccupancySolver::Create(ground.views, options.occupancy));
-  VANTAGE_ASSIGN_OR_RETURN(MaskStream stream, MaskStream::Create(scene, options.background, threads));
+  VANTAGE_ASSIGN_OR_RETURN(MaskStream stream,
+                           MaskStream::Create(scene, options.background, threads));
 
   MapsResult result;
   OccupancyMaps& maps = result.maps;
@@ -124,9 +127,9 @@ Result<TrackingResult> TrackPeople(const Scene& scene, const StageOptions& optio
   const Clock::time_point start = Clock::now();
   VANTAGE_ASSIGN_OR_RETURN(MapsResult mapped,
                            ComputeMaps(scene, options, threads, control, mask_sink));
-  VANTAGE_ASSIGN_OR_RETURN(
-      LinkMapsResult linked,
-      LinkMaps(mapped.maps, options.linking, options.tracks, scene.doors, scene.obstacles, control));
+  VANTAGE_ASSIGN_OR_RETURN(LinkMapsResult linked,
+                           LinkMaps(mapped.maps, options.linking, options.tracks, scene.doors,
+                                    scene.obstacles, control));
   TrackingResult result;
   result.tracks = std::move(linked.tracks);
   result.maps = std::move(mapped.maps);

@@ -71,6 +71,6 @@ struct TrackingResult {
 
 /// The whole way: from a scene to tracks.
 Result<TrackingResult> TrackPeople(const Scene& scene, const StageOptions& options, int threads,
-                             const RunControl& control = {}, const MaskSink& mask_sink = {});
+                                   const RunControl& control = {}, const MaskSink& mask_sink = {});
 
 }  // namespace vantage

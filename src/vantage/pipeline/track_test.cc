@@ -19,9 +19,9 @@ namespace vantage {
 namespace {
 
 using testing::DataFolder;
+using ::testing::HasSubstr;
 using testing::MessageOf;
 using testing::TemporaryFolder;
-using ::testing::HasSubstr;
 
 /// Two cameras that face each other across an area of 8 x 6 m, 5 m up, and people drawn into their
 /// masks as the model sees them (simulated).
@@ -132,11 +132,12 @@ TEST_F(TwoCameras, FramesAskedForAreTheFramesGiven) {
   scene.first_frame = 10;
   scene.frame_count = 5;
   std::vector<FrameIndex> frames;
-  const auto part = ComputeMaps(scene, {}, 2, {}, [&](FrameIndex frame, const auto& masks) -> Status {
-    EXPECT_EQ(masks.size(), 2U);
-    frames.push_back(frame);
-    return {};
-  });
+  const auto part =
+      ComputeMaps(scene, {}, 2, {}, [&](FrameIndex frame, const auto& masks) -> Status {
+        EXPECT_EQ(masks.size(), 2U);
+        frames.push_back(frame);
+        return {};
+      });
   ASSERT_TRUE(whole && part);
   EXPECT_EQ(part->maps.first_frame, 10);
   ASSERT_EQ(part->maps.frame_count(), 5);
@@ -180,13 +181,14 @@ TEST_F(TwoCameras, AreaThatNoCameraSeesIsAnError) {
   EXPECT_THAT(MessageOf(LayOutGround(scene, {})), HasSubstr("use smaller cells"));
 }
 
-// --- Real data: floors that a regression would break; the figures are in README.md ------------------
+// --- Real data: floors that a regression would break; the figures are in README.md
+// ------------------
 
 /// MOTA at 1 m inside the usual area of PETS 2009 S2.L1 over the first frames of an example scene.
 double MotaOfExample(const std::string& example, const std::filesystem::path& data,
                      std::int64_t frames) {
-  auto scene = LoadScene(std::filesystem::path(VANTAGE_SOURCE_DIR) / "examples/pets2009" / example,
-                         data);
+  auto scene =
+      LoadScene(std::filesystem::path(VANTAGE_SOURCE_DIR) / "examples/pets2009" / example, data);
   EXPECT_TRUE(scene) << MessageOf(scene);
   scene->frame_count = frames;
   StageOptions options;

@@ -86,19 +86,21 @@ Result<Detections> ReadDetections(const std::filesystem::path& path, ImageSize s
   VANTAGE_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
   Detections detections;
   std::size_t columns = 0;
-  VANTAGE_RETURN_IF_ERROR(ForEachLine(text, [&](std::string_view line, std::size_t number) -> Status {
-    if (columns == 0) {
-      if (line != "frame,xmin,ymin,xmax,ymax,score" && line != "frame,xmin,ymin,xmax,ymax") {
-        return Fail(
-            "{}:1: the header must be frame,xmin,ymin,xmax,ymax,score (score may be left out)",
-            path.string());
-      }
-      columns = line.ends_with("score") ? 6 : 5;
-      return {};
-    }
-    if (line.empty()) return {};
-    return ReadRow(fmt::format("{}:{}", path.string(), number), line, columns, size, detections);
-  }));
+  VANTAGE_RETURN_IF_ERROR(
+      ForEachLine(text, [&](std::string_view line, std::size_t number) -> Status {
+        if (columns == 0) {
+          if (line != "frame,xmin,ymin,xmax,ymax,score" && line != "frame,xmin,ymin,xmax,ymax") {
+            return Fail(
+                "{}:1: the header must be frame,xmin,ymin,xmax,ymax,score (score may be left out)",
+                path.string());
+          }
+          columns = line.ends_with("score") ? 6 : 5;
+          return {};
+        }
+        if (line.empty()) return {};
+        return ReadRow(fmt::format("{}:{}", path.string(), number), line, columns, size,
+                       detections);
+      }));
   if (detections.empty()) return Fail("{}: holds no detections", path.string());
   return detections;
 }
