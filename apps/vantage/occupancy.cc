@@ -97,7 +97,7 @@ Command OccupancyCommand() {
           .summary = "Maps of where people stand, from the cameras' masks",
           .define = [](CLI::App& app) -> Action {
             const auto flags = std::make_shared<Flags>();
-            CLI::Option* scene = flags->scene.Define(app);
+            CLI::Option* scene = flags->scene.DefineForOccupancy(app);
             CLI::Option* masks =
                 app.add_option(
                        "--masks", flags->masks,

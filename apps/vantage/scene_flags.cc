@@ -4,18 +4,25 @@
 
 namespace vantage::app {
 
-CLI::Option* SceneFlags::Define(CLI::App& app) {
+CLI::Option* SceneFlags::DefineUpToOccupancy(CLI::App& app, const std::string& occupancy_prefix) {
   CLI::Option* scene = app.add_option("scene", scene_, "Scene file (TOML)");
   app.add_option("--data", data_,
                  "Folder that paths in the scene are relative to; default: the scene's own");
   grid_ = AddOptionFlags(app, GridOptions{}, "", "Grid");
   person_ = AddOptionFlags(app, PersonOptions{}, "person-", "Person");
   background_ = AddOptionFlags(app, BackgroundOptions{}, "background-", "Background");
-  occupancy_ = AddOptionFlags(app, OccupancyOptions{}, "occupancy-", "Occupancy");
+  occupancy_ = AddOptionFlags(app, OccupancyOptions{}, occupancy_prefix, "Occupancy");
+  return scene;
+}
+
+CLI::Option* SceneFlags::DefineForTracking(CLI::App& app) {
+  CLI::Option* scene = DefineUpToOccupancy(app, "occupancy-");
   linking_ = AddOptionFlags(app, LinkingOptions{}, "linking-", "Linking");
   tracks_ = AddOptionFlags(app, TrackOptions{}, "tracks-", "Tracks");
   return scene;
 }
+
+CLI::Option* SceneFlags::DefineForOccupancy(CLI::App& app) { return DefineUpToOccupancy(app, ""); }
 
 Result<SceneSetup> SceneFlags::Load() const {
   SceneSetup setup;

@@ -22,12 +22,16 @@ struct SceneSetup {
 /// The flags of the commands that work on a scene.
 class SceneFlags {
  public:
-  /// Returns the option of the scene file, which the command may require.
-  CLI::Option* Define(CLI::App& app);
+  /// Flags of every stage, each prefixed by its stage's name. Returns the option of the scene file,
+  /// which the command may require.
+  CLI::Option* DefineForTracking(CLI::App& app);
+  /// Flags up to the occupancy maps; those of the occupancy stage itself have no prefix.
+  CLI::Option* DefineForOccupancy(CLI::App& app);
   bool given() const { return !scene_.empty(); }
   Result<SceneSetup> Load() const;
 
  private:
+  CLI::Option* DefineUpToOccupancy(CLI::App& app, const std::string& occupancy_prefix);
   std::string scene_, data_;
   OptionFlags grid_, person_, background_, occupancy_, linking_, tracks_;
 };

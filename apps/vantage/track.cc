@@ -115,7 +115,7 @@ Command TrackCommand() {
   return {"track", "The whole way: from the cameras of a scene to tracks on the ground",
           [](CLI::App& app) -> Action {
             auto flags = std::make_shared<Flags>();
-            flags->scene.Define(app)->required();
+            flags->scene.DefineForTracking(app)->required();
             app.add_option("-o,--output", flags->output,
                            "Folder for tracks.csv, summary.json and what else is asked for")
                 ->required();
