@@ -25,6 +25,10 @@ Status CheckReadable(const fs::path& path) {
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) return Fail("{}: no such file", path.string());
   if (fs::is_directory(status)) return Fail("{}: is a folder; a file is needed", path.string());
+  // A pipe could block for ever, a device never end.
+  if (!fs::is_regular_file(status)) {
+    return Fail("{}: is a pipe or a device; a regular file is needed", path.string());
+  }
   return {};
 }
 

@@ -34,6 +34,7 @@ TEST(File, ReadErrorsNameTheFile) {
   const TemporaryFolder folder;
   EXPECT_THAT(MessageOf(ReadTextFile(folder / "absent")), HasSubstr("absent: no such file"));
   EXPECT_THAT(MessageOf(ReadTextFile(folder.path())), HasSubstr("is a folder"));
+  EXPECT_THAT(MessageOf(ReadTextFile("/dev/zero")), HasSubstr("a regular file is needed"));
   ASSERT_TRUE(WriteTextFile(folder / "long", std::string(100, 'x')));
   EXPECT_THAT(MessageOf(ReadTextFile(folder / "long", 99)), HasSubstr("larger than 99 bytes"));
 }
