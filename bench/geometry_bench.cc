@@ -49,7 +49,7 @@ void CountPoints(benchmark::State& state) {
 void BM_ProjectOurs(benchmark::State& state) {
   const Setting setting;
   std::vector<Eigen::Vector2d> pixels(Setting::kPoints);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     for (std::size_t i = 0; i < Setting::kPoints; ++i) {
       pixels[i] =
           setting.camera.ImageFromWorld(setting.points_m[i]).value_or(Eigen::Vector2d(0, 0));
@@ -74,7 +74,7 @@ void BM_ProjectOpenCv(benchmark::State& state) {
   const cv::Vec3d rotation(axis.x(), axis.y(), axis.z());
   const cv::Vec3d translation(t.x(), t.y(), t.z());
   std::vector<cv::Point2d> pixels;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     cv::projectPoints(points_m, rotation, translation, matrix, distortion, pixels);
     benchmark::DoNotOptimize(pixels.data());
     benchmark::ClobberMemory();

@@ -8,7 +8,7 @@
 /// of Google Benchmark, measured in the same run:
 ///
 ///   void BM_ProjectOurs(benchmark::State& state) {
-///     for (auto _ : state) { ... }
+///     while (state.KeepRunning()) { ... }
 ///     state.counters["Mpoint/s"] = benchmark::Counter(
 ///         1e-6 * kPoints, benchmark::Counter::kIsIterationInvariantRate);
 ///   }

@@ -105,7 +105,8 @@ TEST(Pinhole, IsOneToOneWithinTheCone) {
     ASSERT_TRUE(center);
     double previous = 0;
     bool ended = false;
-    for (double r = 0.02; r < 4; r += 0.02) {
+    for (int step = 1; step < 200; ++step) {
+      const double r = 0.02 * step;
       const auto pixel = camera.ImageFromWorld({r * std::cos(angle), r * std::sin(angle), 1});
       if (!pixel) {
         ended = true;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
 namespace vantage::drawing {
@@ -221,6 +222,15 @@ void Text(cv::Mat& image, const std::string& text, cv::Point2d at, const TextSty
     blend({12, 10, 8}, thickness + cvRound(2 * style.halo_px * kOversampling), 0.7);
   }
   blend(style.color, thickness, 1);
+}
+
+std::vector<double> Multiples(double step, double low, double high) {
+  std::vector<double> multiples;
+  const auto last = static_cast<std::int64_t>(std::floor(high / step));
+  for (auto i = static_cast<std::int64_t>(std::ceil(low / step)); i <= last; ++i) {
+    multiples.push_back(static_cast<double>(i) * step);
+  }
+  return multiples;
 }
 
 }  // namespace vantage::drawing

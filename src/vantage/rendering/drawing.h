@@ -52,4 +52,7 @@ double TextWidth(const std::string& text, const TextStyle& style);
 /// `at`: on the base line. Characters beyond ASCII show as question marks.
 void Text(cv::Mat& image, const std::string& text, cv::Point2d at, const TextStyle& style);
 
+/// The multiples of `step` (> 0) in [low, high], ascending: where the lines of a grid are.
+std::vector<double> Multiples(double step, double low, double high);
+
 }  // namespace vantage::drawing

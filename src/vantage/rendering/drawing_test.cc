@@ -130,6 +130,12 @@ TEST(Drawing, TextStandsOnItsBaseLineAtItsAnchor) {
   EXPECT_NEAR((low + high) / 2, 100, 2);
 }
 
+TEST(Drawing, MultiplesCoverTheRangeWithItsEnds) {
+  EXPECT_THAT(Multiples(2, -4, 5), ::testing::ElementsAre(-4, -2, 0, 2, 4));
+  EXPECT_THAT(Multiples(0.5, 0.6, 1), ::testing::ElementsAre(1));
+  EXPECT_TRUE(Multiples(10, 1, 9).empty());
+}
+
 TEST(Drawing, AnyBytesAreText) {
   cv::Mat image = Black(400, 40);
   Text(image, "caf\xc3\xa9 \xff\x01\n", {10, 30}, {.halo_px = 1});

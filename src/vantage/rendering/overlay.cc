@@ -115,10 +115,10 @@ void DrawGround(cv::Mat& picture, const Camera& camera, const Polygon& area, boo
     // At most about a hundred lines, whatever the area's size.
     const double step = std::max(1.0, std::ceil((high - low).maxCoeff() / 50));
     const cv::Scalar color = {96, 86, 78};
-    for (double x = std::ceil(low.x() / step) * step; x <= high.x(); x += step) {
+    for (const double x : drawing::Multiples(step, low.x(), high.x())) {
       GroundLine(picture, camera, {x, low.y()}, {x, high.y()}, color, 1, 0.6);
     }
-    for (double y = std::ceil(low.y() / step) * step; y <= high.y(); y += step) {
+    for (const double y : drawing::Multiples(step, low.y(), high.y())) {
       GroundLine(picture, camera, {low.x(), y}, {high.x(), y}, color, 1, 0.6);
     }
   }

@@ -98,8 +98,8 @@ TEST(DrawPeople, TheNearerOneIsInFront) {
 TEST(DrawPeople, TagsDoNotHideEachOther) {
   const Camera camera = TestCamera();
   cv::Mat picture = Picture();
-  std::vector<Person> crowd;
-  for (int i = 0; i < 4; ++i) crowd.push_back(At(i + 1, {0.02 * i, 0}));
+  const std::vector<Person> crowd = {At(1, {0, 0}), At(2, {0.02, 0}), At(3, {0.04, 0}),
+                                     At(4, {0.06, 0})};
   DrawPeople(picture, camera, crowd, {});
   for (int i = 0; i < 4; ++i) {
     const cv::Scalar color = ColorOf(TrackId{i + 1});

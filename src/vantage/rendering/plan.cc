@@ -33,10 +33,7 @@ double NiceStep(double least) {
   return 10 * power;
 }
 
-std::string Number(double value) {
-  std::string text = fmt::format("{:.6g}", value + 0.0);
-  return text;
-}
+std::string Number(double value) { return fmt::format("{:.6g}", value); }
 
 }  // namespace
 
@@ -108,11 +105,11 @@ void Plan::DrawGrid() {
   const Vector2d low = GroundFromPixel({0.0, ground_.rows - 1.0});
   const Vector2d high = GroundFromPixel({ground_.cols - 1.0, 0.0});
   const auto lines = [&](double step_m, double opacity) {
-    for (double x = std::ceil(low.x() / step_m) * step_m; x <= high.x(); x += step_m) {
+    for (const double x : drawing::Multiples(step_m, low.x(), high.x())) {
       const double px = std::round(PixelFromGround({x, 0}).x);
       drawing::Line(ground_, {px, 0}, {px, ground_.rows - 1.0}, kGridLine, 1, opacity);
     }
-    for (double y = std::ceil(low.y() / step_m) * step_m; y <= high.y(); y += step_m) {
+    for (const double y : drawing::Multiples(step_m, low.y(), high.y())) {
       const double px = std::round(PixelFromGround({0, y}).y);
       drawing::Line(ground_, {0, px}, {ground_.cols - 1.0, px}, kGridLine, 1, opacity);
     }
@@ -123,13 +120,13 @@ void Plan::DrawGrid() {
   drawing::TextStyle style{.height_px = std::max(8.0, 9 * unit_), .color = kLabel, .halo_px = 1.5};
   const double bottom = ground_.rows - 7;
   style.anchor = drawing::Anchor::kCenter;
-  for (double x = std::ceil(low.x() / label_m) * label_m; x <= high.x(); x += label_m) {
+  for (const double x : drawing::Multiples(label_m, low.x(), high.x())) {
     const double px = PixelFromGround({x, 0}).x;
     if (px < 44 || px > ground_.cols - 14) continue;
     drawing::Text(ground_, Number(x), {px, bottom}, style);
   }
   style.anchor = drawing::Anchor::kLeft;
-  for (double y = std::ceil(low.y() / label_m) * label_m; y <= high.y(); y += label_m) {
+  for (const double y : drawing::Multiples(label_m, low.y(), high.y())) {
     const double px = PixelFromGround({0, y}).y;
     if (px < 14 || px > ground_.rows - 30) continue;
     drawing::Text(ground_, Number(y), {6, px + style.height_px / 2}, style);
