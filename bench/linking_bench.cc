@@ -60,7 +60,7 @@ struct Room {
   };
 
   static std::size_t Cell(const Place& place) {
-    return static_cast<std::size_t>(place.x + place.y * kSide);
+    return static_cast<std::size_t>(place.x) + static_cast<std::size_t>(place.y) * kSide;
   }
   std::size_t Below(std::size_t count) { return engine_() % count; }
   Place AnyPlace() { return {static_cast<int>(Below(kSide)), static_cast<int>(Below(kSide))}; }

@@ -39,7 +39,7 @@ const Tables& SharedTables() {
 }
 
 std::uint8_t LevelOf(float value) {
-  return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F) + 0.5F);
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
 }
 
 std::uint8_t LevelOfLinear(float value) {
