@@ -2,27 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/background/subtractor.h"
 
-#include <chrono>
 #include <opencv2/core.hpp>
 #include <utility>
 
+#include "vantage/base/stopwatch.h"
+
 namespace vantage {
-namespace {
-
-/// Adds the time since the last call to one of the report's sums.
-class Stopwatch {
- public:
-  void AddTo(double& sum_secs) {
-    const auto now = std::chrono::steady_clock::now();
-    sum_secs += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-}  // namespace
 
 void VisitOptions(BackgroundOptions& options, OptionVisitor& visitor) {
   VisitOptions(options.mixture, visitor);
@@ -46,7 +31,7 @@ Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int thread
   Stopwatch watch;
   const cv::Mat frame = bgr;  // `mask` may be the same object
   VANTAGE_RETURN_IF_ERROR(model_.Apply(frame, mask, threads));
-  watch.AddTo(report_.mixture_secs);
+  watch.LapInto(report_.mixture_secs);
 
   const auto background = [this](const cv::Rect& region) { return model_.BackgroundImage(region); };
   VANTAGE_ASSIGN_OR_RETURN(const std::vector<JudgedComponent> judged,
@@ -63,10 +48,10 @@ Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int thread
     VANTAGE_RETURN_IF_ERROR(model_.Absorb(ghosts));
     mask.setTo(0, ghosts);
   }
-  watch.AddTo(report_.ghost_secs);
+  watch.LapInto(report_.ghost_secs);
 
   VANTAGE_RETURN_IF_ERROR(CleanMask(mask, options_.cleanup));
-  watch.AddTo(report_.cleanup_secs);
+  watch.LapInto(report_.cleanup_secs);
   ++report_.frames;
   return {};
 }

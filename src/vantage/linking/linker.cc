@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/linking/linker.h"
 
-#include <chrono>
 #include <new>
 
+#include "vantage/base/stopwatch.h"
 #include "vantage/linking/flow_solver.h"
 #include "vantage/linking/layered_graph.h"
 
@@ -48,13 +48,10 @@ void VisitOptions(LinkingOptions& options, OptionVisitor& visitor) {
 
 Result<LinkingResult> LinkPaths(const LinkingProblem& problem, const LinkingOptions& options,
                                 const RunControl& control) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   try {
     Result<LinkingResult> result = Link(problem, options, control);
-    if (result) {
-      const auto end = std::chrono::steady_clock::now();
-      result->report.seconds = std::chrono::duration<double>(end - start).count();
-    }
+    if (result) result->report.seconds = stopwatch.Seconds();
     return result;
   } catch (const std::bad_alloc&) {
     return Fail("linking: not enough memory for {} frames of {} x {} cells; link a shorter stretch",

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -12,6 +11,7 @@
 
 #include "vantage/base/file.h"
 #include "vantage/base/parallel.h"
+#include "vantage/base/stopwatch.h"
 #include "vantage/video/picture.h"
 
 namespace vantage {
@@ -84,7 +84,7 @@ Status WriteResults(const PomFile& file, const fs::path& output_folder,
 
 Result<PomReport> RunPom(const PomFile& file, const fs::path& output_folder, int threads,
                          const RunControl& control) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   VANTAGE_ASSIGN_OR_RETURN(const OccupancySolver solver,
                            OccupancySolver::Create(file.views, file.options));
   const std::vector<std::int64_t> frames = FrameNumbers(file);
@@ -111,7 +111,7 @@ Result<PomReport> RunPom(const PomFile& file, const fs::path& output_folder, int
     control.Report(report.frames, total);
   }
   VANTAGE_RETURN_IF_ERROR(WriteResults(file, output_folder, frames, maps));
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = stopwatch.Seconds();
   return report;
 }
 

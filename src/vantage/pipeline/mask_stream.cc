@@ -3,21 +3,12 @@
 #include "vantage/pipeline/mask_stream.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "vantage/base/parallel.h"
+#include "vantage/base/stopwatch.h"
 
 namespace vantage {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-}  // namespace
 
 Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOptions& options,
                                       int threads) {
@@ -56,11 +47,10 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
 
 Result<bool> MaskStream::Read(std::vector<cv::Mat>& masks) {
   if (frames_read_ == limit_) return false;
-  Clock::time_point start = Clock::now();
+  Stopwatch stopwatch;
   VANTAGE_ASSIGN_OR_RETURN(const bool more, reader_.Read(frames_, threads_));
-  read_secs_ += SecondsSince(start);
+  stopwatch.LapInto(read_secs_);
   if (!more) return false;
-  start = Clock::now();
   masks.resize(frames_.size());
   // One camera uses all threads for its rows; several share them.
   const int row_threads = frames_.size() == 1 ? threads_ : 1;
@@ -75,7 +65,7 @@ Result<bool> MaskStream::Read(std::vector<cv::Mat>& masks) {
       frames_[camera].copyTo(masks[camera]);
     }
   });
-  background_secs_ += SecondsSince(start);
+  stopwatch.LapInto(background_secs_);
   for (const Status& status : statuses) VANTAGE_RETURN_IF_ERROR(Status(status));
   ++frames_read_;
   return true;

@@ -3,21 +3,15 @@
 #include "vantage/pipeline/track.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "vantage/base/parallel.h"
+#include "vantage/base/stopwatch.h"
 #include "vantage/pipeline/ground.h"
 #include "vantage/pipeline/mask_stream.h"
 
 namespace vantage {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Masks of consecutive frames, solved in parallel: frames are independent of each other.
 class FrameBatch {
@@ -105,9 +99,9 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
       }
       frames_read += more ? 1 : 0;
     }
-    const Clock::time_point start = Clock::now();
+    const Stopwatch stopwatch;
     VANTAGE_RETURN_IF_ERROR(batch.Solve(maps, report));
-    report.occupancy_secs += SecondsSince(start);
+    report.occupancy_secs += stopwatch.Seconds();
     control.Report(report.frames, total);
   }
   if (report.frames == 0) {
@@ -124,7 +118,7 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
 
 Result<TrackingResult> TrackPeople(const Scene& scene, const StageOptions& options, int threads,
                                    const RunControl& control, const MaskSink& mask_sink) {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch stopwatch;
   VANTAGE_ASSIGN_OR_RETURN(MapsResult mapped,
                            ComputeMaps(scene, options, threads, control, mask_sink));
   VANTAGE_ASSIGN_OR_RETURN(LinkMapsResult linked,
@@ -135,7 +129,7 @@ Result<TrackingResult> TrackPeople(const Scene& scene, const StageOptions& optio
   result.maps = std::move(mapped.maps);
   result.report.maps = std::move(mapped.report);
   result.report.linking = linked.report;
-  result.report.total_secs = SecondsSince(start);
+  result.report.total_secs = stopwatch.Seconds();
   return result;
 }
 

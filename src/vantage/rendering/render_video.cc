@@ -3,12 +3,12 @@
 #include "vantage/rendering/render_video.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <utility>
 
+#include "vantage/base/stopwatch.h"
 #include "vantage/video/video_writer.h"
 
 namespace vantage {
@@ -56,7 +56,7 @@ std::optional<std::int64_t> FrameCount(const Scene& scene, const Tracks& tracks,
 Result<RenderReport> Render(const Scene& scene, const Tracks& tracks,
                             std::vector<SyncedSource> sources, const std::filesystem::path& output,
                             const RenderOptions& options, int threads, const RunControl& control) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   std::optional<MultiCameraReader> reader;
   if (options.picture) {
     VANTAGE_RETURN_IF_ERROR(CheckSources(scene, sources));
@@ -84,7 +84,7 @@ Result<RenderReport> Render(const Scene& scene, const Tracks& tracks,
     return Fail("{}: no frame to render from frame {} on", scene.name, scene.first_frame);
   }
   VANTAGE_RETURN_IF_ERROR(writer.Finish());
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = stopwatch.Seconds();
   return report;
 }
 
