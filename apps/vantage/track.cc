@@ -88,9 +88,13 @@ Status Run(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const TrackingResult result,
                            TrackPeople(setup.scene, setup.options, common.threads,
                                        MakeRunControl(common, "track", "frames"), sink));
+  // Absolute, so that `vantage render` finds them from wherever it is run.
+  const auto absolute = [](const std::filesystem::path& path) {
+    return path.empty() ? path : std::filesystem::absolute(path).lexically_normal();
+  };
   const RunRequest request{.arguments = common.arguments,
-                           .scene = setup.scene.file,
-                           .data = setup.data,
+                           .scene = absolute(setup.scene.file),
+                           .data = absolute(setup.data),
                            .threads = common.threads};
   VANTAGE_ASSIGN_OR_RETURN(const nlohmann::ordered_json summary,
                            Summarize(request, setup.scene, setup.options, result));
