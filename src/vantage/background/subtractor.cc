@@ -29,7 +29,8 @@ Result<BackgroundSubtractor> BackgroundSubtractor::Create(ImageSize size,
 
 Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int threads) {
   Stopwatch watch;
-  const cv::Mat frame = bgr;  // `mask` may be the same object
+  // `mask` may be the same object.
+  const cv::Mat frame = bgr;  // NOLINT(performance-unnecessary-copy-initialization)
   VANTAGE_RETURN_IF_ERROR(model_.Apply(frame, mask, threads));
   watch.LapInto(report_.mixture_secs);
 
