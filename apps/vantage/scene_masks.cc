@@ -3,9 +3,9 @@
 #include "scene_masks.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
+#include "vantage/base/text.h"
 #include "vantage/video/mask_writer.h"
 
 namespace vantage::app {
@@ -21,8 +21,7 @@ Result<FrameIndex> LowestNumber(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
     const std::string stem = entry.path().stem().string();
     FrameIndex number = 0;
-    const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
-    if (error != std::errc() || end != stem.data() + stem.size()) continue;
+    if (!ParseNumber(stem, number)) continue;
     lowest = std::min(lowest.value_or(number), number);
   }
   if (!lowest) return Fail("{}: holds no masks named 000000.png ...", folder.string());

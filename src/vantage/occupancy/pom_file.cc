@@ -3,12 +3,12 @@
 #include "vantage/occupancy/pom_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "vantage/base/file.h"
+#include "vantage/base/text.h"
 
 namespace vantage {
 namespace fs = std::filesystem;
@@ -111,8 +111,7 @@ class Parser {
   template <class T>
   Status Number(std::size_t word, const char* name, T& value) const {
     const std::string_view text = words_[word];
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code == std::errc() && end == text.data() + text.size()) return {};
+    if (ParseNumber(text, value)) return {};
     return FailHere("{} of {} is '{}'; it must be {}", name, words_[0], text,
                     std::is_integral_v<T> ? "a whole number" : "a number");
   }

@@ -11,14 +11,19 @@
 
 #include "vantage/base/file.h"
 #include "vantage/base/test_support.h"
+#include "vantage/video/test_sources.h"
 
 namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::Bytes;
 using ::testing::HasSubstr;
 using testing::MessageOf;
+using testing::Outcome;
+using testing::ReadAll;
 using testing::TemporaryFolder;
+using testing::WriteBytes;
 
 constexpr int kWidth = 96;
 constexpr int kHeight = 64;
@@ -41,26 +46,6 @@ fs::path WriteVideo(const fs::path& path, const std::string& codec) {
   EXPECT_TRUE(writer.isOpened()) << path;
   for (int i = 0; i < 40; ++i) writer.write(Frame(i));
   return path;
-}
-
-std::string Bytes(const fs::path& path) { return ReadTextFile(path).value(); }
-void WriteBytes(const fs::path& path, std::string_view bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-/// Reads to the end; the number of frames, and the message if it failed.
-struct Outcome {
-  int frames = 0;
-  std::string message;
-};
-Outcome ReadAll(FrameSource& source) {
-  Outcome outcome;
-  cv::Mat frame;
-  for (;; ++outcome.frames) {
-    const Result<bool> more = source.Read(frame);
-    outcome.message = MessageOf(more);
-    if (!more || !*more) return outcome;
-  }
 }
 
 void PutUint32(std::string& bytes, std::size_t at, std::uint32_t value) {

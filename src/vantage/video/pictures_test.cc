@@ -11,14 +11,19 @@
 #include "vantage/base/file.h"
 #include "vantage/base/test_support.h"
 #include "vantage/video/open.h"
+#include "vantage/video/test_sources.h"
 
 namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::Bytes;
 using ::testing::HasSubstr;
 using testing::MessageOf;
+using testing::Outcome;
+using testing::ReadAll;
 using testing::TemporaryFolder;
+using testing::WriteBytes;
 
 constexpr int kWidth = 96;
 constexpr int kHeight = 64;
@@ -30,26 +35,6 @@ cv::Mat Frame(int number) {
   return frame;
 }
 int NumberOf(const cv::Mat& frame) { return frame.at<cv::Vec3b>(kHeight - 4, kWidth - 4)[1]; }
-
-std::string Bytes(const fs::path& path) { return ReadTextFile(path).value(); }
-void WriteBytes(const fs::path& path, std::string_view bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-/// Reads to the end; the number of frames, and the message if it failed.
-struct Outcome {
-  int frames = 0;
-  std::string message;
-};
-Outcome ReadAll(FrameSource& source) {
-  Outcome outcome;
-  cv::Mat frame;
-  for (;; ++outcome.frames) {
-    const Result<bool> more = source.Read(frame);
-    outcome.message = MessageOf(more);
-    if (!more || !*more) return outcome;
-  }
-}
 
 void WriteVideo(const fs::path& path, const cv::Mat& frame) {
   cv::VideoWriter writer(path.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'),
