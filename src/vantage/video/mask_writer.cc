@@ -31,4 +31,25 @@ Status WriteMask(const std::filesystem::path& folder, FrameIndex frame, const cv
   return {};
 }
 
+Result<MaskWriter> MaskWriter::Create(const std::filesystem::path& folder, MaskFormat format,
+                                      ImageSize size, double frames_per_second, bool replace) {
+  VANTAGE_ASSIGN_OR_RETURN(StagedDirectory staged, StagedDirectory::Create(folder, replace));
+  MaskWriter writer(std::move(staged));
+  if (format == MaskFormat::kVideo) {
+    VANTAGE_ASSIGN_OR_RETURN(
+        writer.video_, VideoWriter::CreateForMasks(writer.folder_.temporary() / kMaskVideoName,
+                                                   size, frames_per_second));
+  }
+  return writer;
+}
+
+Status MaskWriter::Write(FrameIndex frame, const cv::Mat& mask) {
+  return video_ ? video_->Write(mask) : WriteMask(folder_.temporary(), frame, mask);
+}
+
+Status MaskWriter::Finish() {
+  if (video_) VANTAGE_RETURN_IF_ERROR(video_->Finish());
+  return folder_.Commit();
+}
+
 }  // namespace vantage

@@ -10,7 +10,9 @@
 
 #include "vantage/video/container.h"
 #include "vantage/video/file_lists.h"
+#include "vantage/video/mask_writer.h"
 #include "vantage/video/picture.h"
+#include "vantage/video/sequence.h"
 
 namespace vantage {
 namespace {
@@ -240,6 +242,7 @@ Result<std::unique_ptr<FrameSource>> OpenPictures(const fs::path& path) {
 
 Result<std::unique_ptr<FrameSource>> OpenInput(const fs::path& path) {
   std::error_code code;
+  if (IsSequenceFolder(path)) return OpenPictures(path / "input");
   if (fs::is_directory(path, code)) return OpenPictures(path);
   if (fs::exists(path, code)) {
     if (internal::HasPictureExtension(path)) {
@@ -255,7 +258,10 @@ Result<std::unique_ptr<FrameSource>> OpenInput(const fs::path& path) {
 }
 
 Result<std::unique_ptr<FrameSource>> OpenMasks(const fs::path& path) {
-  VANTAGE_ASSIGN_OR_RETURN(std::unique_ptr<FrameSource> pictures, OpenInput(path));
+  std::error_code code;
+  const bool video_inside = fs::exists(path / kMaskVideoName, code);
+  VANTAGE_ASSIGN_OR_RETURN(std::unique_ptr<FrameSource> pictures,
+                           video_inside ? OpenVideo(path / kMaskVideoName) : OpenInput(path));
   return std::make_unique<MaskSource>(std::move(pictures));
 }
 

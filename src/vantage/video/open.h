@@ -22,12 +22,13 @@ Result<std::unique_ptr<FrameSource>> OpenVideo(const std::filesystem::path& path
 /// names. PNG, JPEG, BMP, PGM and PPM; grey and 16-bit pictures become 8-bit BGR (CV_8UC3).
 Result<std::unique_ptr<FrameSource>> OpenPictures(const std::filesystem::path& path);
 
-/// The above by what `path` is: a video file, a pattern, or a folder.
+/// The above by what `path` is: a video file, a pattern, or a folder; of the folder of a
+/// change-detection sequence (sequence.h) the pictures in its folder `input`.
 Result<std::unique_ptr<FrameSource>> OpenInput(const std::filesystem::path& path);
 
-/// Ready-made masks from whatever OpenInput reads: values of 128 and above are foreground (255),
-/// the rest is background (0). Coloured pictures are refused: the channels may differ by at most
-/// 16, the noise of lossy compression.
+/// Ready-made masks from whatever OpenInput reads, or the masks.mkv in a folder (MaskWriter):
+/// values of 128 and above are foreground (255), the rest is background (0). Coloured pictures are
+/// refused: the channels may differ by at most 16, the noise of lossy compression.
 Result<std::unique_ptr<FrameSource>> OpenMasks(const std::filesystem::path& path);
 
 }  // namespace vantage
