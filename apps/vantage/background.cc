@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "command.h"
 #include "vantage/background/subtractor.h"
-#include "vantage/base/file.h"
 #include "vantage/video/mask_writer.h"
 #include "vantage/video/open.h"
 
@@ -15,11 +16,15 @@ namespace vantage::app {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr std::int64_t kMaxFrames = std::int64_t{1} << 40;
 
 struct Flags {
   fs::path input;
   fs::path output;
   bool force = false;
+  std::string format = "png";          // or "video"
+  std::int64_t start = 0;              // frame of the input
+  std::optional<std::int64_t> frames;  // none: to the end
   OptionFlags options;
 };
 
@@ -27,7 +32,8 @@ struct Flags {
 bool IsInside(const fs::path& path, const fs::path& folder) {
   std::error_code code;
   const fs::path inner = fs::weakly_canonical(path, code);
-  const fs::path outer = fs::weakly_canonical(folder / "", code).parent_path();
+  fs::path outer = fs::weakly_canonical(folder, code);
+  if (!outer.has_filename()) outer = outer.parent_path();  // named with a slash at the end
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
@@ -54,6 +60,19 @@ void PrintReport(const BackgroundReport& report, const BackgroundOptions& option
               {"masks", flags.output.string()}});
 }
 
+/// Frames per second of a video of masks: the input's where it has a usable one.
+double VideoRate(const SourceInfo& info) {
+  const double rate = info.frames_per_second.value_or(0);
+  return rate >= 1 && rate <= 200 ? rate : 25;
+}
+
+/// 0: not known.
+std::int64_t FramesToProcess(const SourceInfo& info, const Flags& flags) {
+  if (!info.frame_count) return flags.frames.value_or(0);
+  const std::int64_t left = *info.frame_count - flags.start;
+  return std::min(left, flags.frames.value_or(left));
+}
+
 Status RunBackground(const Flags& flags, const CommonFlags& common) {
   BackgroundOptions options;
   flags.options.ApplyTo(options);
@@ -65,21 +84,30 @@ Status RunBackground(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const std::unique_ptr<FrameSource> source, OpenInput(flags.input));
   VANTAGE_ASSIGN_OR_RETURN(BackgroundSubtractor subtractor,
                            BackgroundSubtractor::Create(source->info().size, options));
-  VANTAGE_ASSIGN_OR_RETURN(StagedDirectory folder,
-                           StagedDirectory::Create(flags.output, flags.force));
+  VANTAGE_ASSIGN_OR_RETURN(
+      MaskWriter masks,
+      MaskWriter::Create(flags.output,
+                         flags.format == "video" ? MaskFormat::kVideo : MaskFormat::kPng,
+                         source->info().size, VideoRate(source->info()), flags.force));
   const RunControl control = MakeRunControl(common, "background", "frames");
-  const std::int64_t total = source->info().frame_count.value_or(0);
+  VANTAGE_ASSIGN_OR_RETURN(const std::int64_t skipped, source->Skip(flags.start));
+  if (skipped < flags.start) {
+    return Fail("{}: holds {} frames; --start must be below that", flags.input.string(), skipped);
+  }
+  const std::int64_t total = FramesToProcess(source->info(), flags);
   cv::Mat frame, mask;
-  for (FrameIndex index = 0;; ++index) {
+  for (std::int64_t done = 0; !flags.frames || done < *flags.frames; ++done) {
     if (control.Stopped()) return Cancelled();
     VANTAGE_ASSIGN_OR_RETURN(const bool more, source->Read(frame));
     if (!more) break;
     VANTAGE_RETURN_IF_ERROR(subtractor.Apply(frame, mask, common.threads));
-    VANTAGE_RETURN_IF_ERROR(WriteMask(folder.temporary(), index, mask));
-    control.Report(index + 1, total);
+    VANTAGE_RETURN_IF_ERROR(masks.Write(flags.start + done, mask));
+    control.Report(done + 1, total);
   }
-  if (subtractor.report().frames == 0) return Fail("{}: holds no frames", flags.input.string());
-  VANTAGE_RETURN_IF_ERROR(folder.Commit());
+  if (subtractor.report().frames == 0) {
+    return Fail("{}: holds no frame from {} on", flags.input.string(), flags.start);
+  }
+  VANTAGE_RETURN_IF_ERROR(masks.Finish());
   PrintReport(subtractor.report(), options, flags, common);
   return {};
 }
@@ -92,13 +120,27 @@ Command BackgroundCommand() {
           .define = [](CLI::App& app) -> Action {
             const auto flags = std::make_shared<Flags>();
             app.add_option("input", flags->input,
-                           "Video, folder of pictures, or pattern as in view1/%06d.png")
+                           "Video, folder of pictures, pattern as in view1/%06d.png, or folder of "
+                           "a change-detection sequence")
                 ->type_name("INPUT")
                 ->required();
             app.add_option("-o,--output", flags->output,
-                           "Folder for the masks, one PNG per frame: 000000.png and on")
+                           "Folder for the masks: 000000.png for frame 0 of the input and on, or "
+                           "masks.mkv")
                 ->type_name("DIR")
                 ->required();
+            app.add_option("--format", flags->format,
+                           "One PNG per frame, or one lossless video (masks.mkv, FFV1)")
+                ->check(CLI::IsMember({"png", "video"}))
+                ->capture_default_str();
+            app.add_option("--start", flags->start, "First frame of the input to read [frames]")
+                ->check(CLI::Range(std::int64_t{0}, kMaxFrames))
+                ->type_name("NUMBER")
+                ->capture_default_str();
+            app.add_option("--frames", flags->frames,
+                           "How many frames to read from there; default: to the end [frames]")
+                ->check(CLI::Range(std::int64_t{1}, kMaxFrames))
+                ->type_name("NUMBER");
             app.add_flag("--force", flags->force, "Replace what the folder holds");
             flags->options = AddOptionFlags(app, BackgroundOptions(), "", "Background");
             return [flags](const CommonFlags& common) { return RunBackground(*flags, common); };

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "command.h"
+#include "evaluate_masks.h"
 #include "vantage/metrics/clear_mot.h"
 #include "vantage/scene/scene.h"
 #include "vantage/tracks/track_file.h"
@@ -168,7 +169,13 @@ Command EvaluateCommand() {
             "--boxes", flags->boxes, "Compare boxes in pictures (MOTChallenge's columns 3 to 6)");
         boxes->excludes(area)->excludes(scene);
         flags->options = AddOptionFlags(*tracks, EvaluationOptions{}, "", "Evaluation");
-        return [flags](const CommonFlags& common) { return EvaluateTrackFiles(*flags, common); };
+        CLI::App* masks = app.add_subcommand(
+            "masks", "Masks of what moves against labelled truth: the change-detection measures");
+        masks->fallthrough();
+        const Action evaluate_masks = DefineEvaluateMasks(*masks);
+        return [flags, masks, evaluate_masks](const CommonFlags& common) {
+          return masks->parsed() ? evaluate_masks(common) : EvaluateTrackFiles(*flags, common);
+        };
       }};
 }
 
