@@ -159,8 +159,10 @@ Status StagedFile::Commit() {
   return {};
 }
 
-Result<StagedDirectory> StagedDirectory::Create(const fs::path& final_path, bool replace) {
-  if (final_path.empty()) return Fail("the name of the output folder is empty");
+Result<StagedDirectory> StagedDirectory::Create(const fs::path& path, bool replace) {
+  if (path.empty()) return Fail("the name of the output folder is empty");
+  // Named with a slash at the end, its parent would be itself.
+  const fs::path final_path = path.has_filename() ? path : path.parent_path();
   std::error_code code;
   if (fs::exists(final_path, code)) {
     if (!fs::is_directory(final_path, code)) {

@@ -90,5 +90,18 @@ TEST(StagedDirectory, KeepsEarlierFilesUnlessAskedToReplace) {
   EXPECT_EQ(EntriesIn(folder.path()), 1);
 }
 
+TEST(StagedDirectory, NameMayEndInASlash) {
+  const TemporaryFolder folder;
+  for (const bool replace : {false, true}) {
+    auto staged = StagedDirectory::Create(folder / "masks/", replace);
+    ASSERT_TRUE(staged) << MessageOf(staged);
+    std::ofstream(staged->temporary() / "new.png") << "new";
+    const Status committed = staged->Commit();
+    EXPECT_TRUE(committed) << MessageOf(committed);
+    EXPECT_EQ(EntriesIn(folder / "masks"), 1);
+    EXPECT_EQ(EntriesIn(folder.path()), 1);
+  }
+}
+
 }  // namespace
 }  // namespace vantage
