@@ -2,54 +2,25 @@
 // SPDX-License-Identifier: MIT
 // Runs the program as a user does.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
-#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "test_program.h"
 #include "vantage/base/file.h"
 #include "vantage/base/test_support.h"
 
 namespace vantage {
 namespace {
 
-using testing::DataFolder;
+using testing::Entries;
+using testing::ExpectOneLine;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
+using testing::Outcome;
+using testing::RunProgram;
 using testing::TemporaryFolder;
-
-struct Outcome {
-  int status = -1;
-  std::string out, err;
-};
-
-/// `shell_setup` runs first in the shell that becomes the program.
-Outcome RunProgram(const std::string& arguments, const std::string& shell_setup = ":") {
-  const TemporaryFolder folder;
-  const std::string command =
-      fmt::format("{}; exec '{}' {} >'{}' 2>'{}' </dev/null", shell_setup, VANTAGE_PROGRAM,
-                  arguments, (folder / "out").string(), (folder / "err").string());
-  const int status = std::system(command.c_str());
-  Outcome outcome;
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  outcome.out = ReadTextFile(folder / "out").value_or("");
-  outcome.err = ReadTextFile(folder / "err").value_or("");
-  return outcome;
-}
-
-/// Everything in a folder, temporaries included.
-std::vector<std::string> Entries(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  if (!std::filesystem::exists(folder)) return names;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (!entry.is_directory()) names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 /// A scene that a test spoils: one camera 10 m up that looks down on a person who walks across,
 /// as ready masks of 160 x 120 pixels.
@@ -88,13 +59,6 @@ translation_m = [0.0, 4.8, 10.4]
     return RunProgram(fmt::format("track '{}' -o '{}' --quiet", Write(), out().string()));
   }
 };
-
-void ExpectOneLine(const Outcome& outcome, int status, const std::string& part) {
-  EXPECT_EQ(outcome.status, status) << outcome.err;
-  EXPECT_THAT(outcome.err, StartsWith("vantage: "));
-  EXPECT_THAT(outcome.err, HasSubstr(part));
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-}
 
 TEST(Program, HelpAndVersionSucceed) {
   EXPECT_EQ(RunProgram("--version").status, 0);

@@ -96,15 +96,14 @@ MaskCounts CountSlowly(const cv::Mat& truth, const cv::Mat& mask, const cv::Mat&
 }
 
 RC_GTEST_PROP(CountMask, AgreesWithTheSlowReference, ()) {
-  const int rows = *rc::gen::inRange(1, 20);
-  const int columns = *rc::gen::inRange(1, 20);
-  const auto random = [&](const std::vector<int>& values) {
+  const int rows = *rc::gen::inRange(1, 40);
+  const int columns = *rc::gen::inRange(1, 40);
+  cv::RNG generator(*rc::gen::arbitrary<std::uint64_t>());
+  const auto random = [&](const std::vector<std::uint8_t>& values) {
     // One column more, cut off: rows do not follow each other in memory.
     cv::Mat wide(rows, columns + 1, CV_8UC1);
-    for (int row = 0; row < rows; ++row) {
-      for (int column = 0; column <= columns; ++column) {
-        wide.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>(*rc::gen::elementOf(values));
-      }
+    for (auto pixel = wide.begin<std::uint8_t>(); pixel != wide.end<std::uint8_t>(); ++pixel) {
+      *pixel = values[generator.uniform(0, static_cast<int>(values.size()))];
     }
     return cv::Mat(wide.colRange(0, columns));
   };

@@ -10,6 +10,7 @@
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
+#include <vector>
 
 #include "vantage/base/file.h"
 #include "vantage/base/test_support.h"
@@ -146,6 +147,118 @@ TEST(VideoWriter, RefusesWrongUse) {
   EXPECT_THAT(MessageOf(writer->Write(Frame({48, 64}, 1))), HasSubstr("frame 0 is not"));
   EXPECT_THAT(MessageOf(writer->Write(cv::Mat(48, 64, CV_8UC1))), HasSubstr("frame 0 is not"));
   EXPECT_THAT(MessageOf(writer->Finish()), HasSubstr("no frame was written"));
+}
+
+cv::Mat NoiseMask(ImageSize size, int seed) {
+  cv::Mat grey;
+  cv::extractChannel(Noise(size, seed), grey, 0);
+  return grey >= 128;
+}
+
+TEST(MaskVideo, IsReadBackBitForBit) {
+  TemporaryFolder folder;
+  // Rates that are no whole number of Matroska's milliseconds, and the ends of what is allowed.
+  for (const double rate : {0.5, 7.0, 25.0, 29.97, 60.0, 200.0}) {
+    for (const ImageSize size : {ImageSize{2, 2}, ImageSize{62, 34}, ImageSize{320, 240}}) {
+      SCOPED_TRACE(fmt::format("{} x {} px at {}", size.width, size.height, rate));
+      const fs::path path = folder / fmt::format("{}-{}.mkv", size.width, rate);
+      auto writer = VideoWriter::CreateForMasks(path, size, rate);
+      ASSERT_TRUE(writer) << MessageOf(writer);
+      std::vector<cv::Mat> masks;
+      for (int i = 0; i < 40; ++i) {
+        masks.push_back(i % 7 == 0 ? cv::Mat(size.height, size.width, CV_8UC1, cv::Scalar(0))
+                                   : NoiseMask(size, i));
+        const Status written = writer->Write(masks.back());
+        ASSERT_TRUE(written) << MessageOf(written);
+      }
+      const Status finished = writer->Finish();
+      ASSERT_TRUE(finished) << MessageOf(finished);
+
+      const auto source = OpenMasks(path);
+      ASSERT_TRUE(source) << MessageOf(source);
+      EXPECT_EQ((*source)->info().size, size);
+      cv::Mat read;
+      for (const cv::Mat& mask : masks) {
+        ASSERT_TRUE((*source)->Read(read).value());
+        EXPECT_EQ(cv::norm(read, mask, cv::NORM_INF), 0);
+      }
+      EXPECT_FALSE((*source)->Read(read).value());
+    }
+  }
+}
+
+TEST(MaskVideo, RefusesWrongUse) {
+  TemporaryFolder folder;
+  EXPECT_THAT(MessageOf(VideoWriter::CreateForMasks(folder / "m.mp4", {64, 48}, 25)),
+              HasSubstr("ends in .mkv"));
+  EXPECT_THAT(MessageOf(VideoWriter::CreateForMasks(folder / "m.mkv", {63, 48}, 25)),
+              HasSubstr("63 x 48 px do not fit in a lossless video, whose sides are even"));
+  auto writer = VideoWriter::CreateForMasks(folder / "m.mkv", {64, 48}, 25);
+  ASSERT_TRUE(writer) << MessageOf(writer);
+  EXPECT_THAT(MessageOf(writer->Write(Frame({64, 48}, 1))), HasSubstr("not an 8-bit mask"));
+}
+
+TEST(MaskVideo, FullDiskIsAnErrorAndLeavesNothing) {
+  TemporaryFolder folder;
+  for (const rlim_t limit : {0, 100, 3'000, 40'000, 90'000}) {
+    const FileSizeLimit full(limit);
+    auto writer = VideoWriter::CreateForMasks(folder / "m.mkv", {160, 120}, 10);
+    Status status;
+    if (!writer) status = tl::unexpected(writer.error());
+    for (int i = 0; i < 60 && status; ++i) status = writer->Write(NoiseMask({160, 120}, i));
+    if (status) status = writer->Finish();
+    EXPECT_THAT(MessageOf(status), HasSubstr("m.mkv: ")) << limit;
+  }
+  EXPECT_EQ(FilesIn(folder.path()), 0u);
+}
+
+TEST(MaskVideo, CutShortIsAnError) {
+  TemporaryFolder folder;
+  const fs::path path = folder / "m.mkv";
+  auto writer = VideoWriter::CreateForMasks(path, {160, 120}, 10);
+  ASSERT_TRUE(writer) << MessageOf(writer);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->Write(NoiseMask({160, 120}, i)));
+  ASSERT_TRUE(writer->Finish());
+  fs::resize_file(path, fs::file_size(path) / 2);
+  const auto source = OpenMasks(path);
+  ASSERT_TRUE(source) << MessageOf(source);
+  cv::Mat mask;
+  Result<bool> more = true;
+  for (int i = 0; i < 20 && more && *more; ++i) more = (*source)->Read(mask);
+  EXPECT_THAT(MessageOf(more), HasSubstr("cut short"));
+}
+
+TEST(MaskWriter, FolderAppearsWholeInEitherFormat) {
+  TemporaryFolder folder;
+  for (const MaskFormat format : {MaskFormat::kPng, MaskFormat::kVideo}) {
+    const fs::path out = folder / (format == MaskFormat::kPng ? "png" : "video");
+    {
+      auto dropped = MaskWriter::Create(out, format, {64, 48}, 25, false);
+      ASSERT_TRUE(dropped) << MessageOf(dropped);
+      ASSERT_TRUE(dropped->Write(0, NoiseMask({64, 48}, 0)));
+    }
+    EXPECT_FALSE(fs::exists(out));
+    auto writer = MaskWriter::Create(out, format, {64, 48}, 25, false);
+    ASSERT_TRUE(writer) << MessageOf(writer);
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(writer->Write(i, NoiseMask({64, 48}, i)));
+    EXPECT_FALSE(fs::exists(out));
+    const Status finished = writer->Finish();
+    ASSERT_TRUE(finished) << MessageOf(finished);
+    EXPECT_EQ(FilesIn(out), format == MaskFormat::kPng ? 5u : 1u);
+    const auto source = OpenMasks(out);
+    ASSERT_TRUE(source) << MessageOf(source);
+    cv::Mat read;
+    for (int i = 0; i < 5; ++i) {
+      ASSERT_TRUE((*source)->Read(read).value());
+      EXPECT_EQ(cv::norm(read, NoiseMask({64, 48}, i), cv::NORM_INF), 0);
+    }
+    EXPECT_THAT(MessageOf(MaskWriter::Create(out, format, {64, 48}, 25, false)),
+                HasSubstr(out.string()));
+  }
+  EXPECT_EQ(FilesIn(folder.path()), 2u);
+  EXPECT_THAT(
+      MessageOf(MaskWriter::Create(folder / "odd", MaskFormat::kVideo, {63, 48}, 25, false)),
+      HasSubstr("write pictures (PNG)"));
 }
 
 TEST(WriteMask, IsReadBackByOpenMasks) {
