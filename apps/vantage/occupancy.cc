@@ -101,8 +101,8 @@ Command OccupancyCommand() {
             CLI::Option* masks =
                 app.add_option(
                        "--masks", flags->masks,
-                       "Folder of ready masks, MASKS/CAMERA/000000.png ..., numbered by the "
-                       "scene's frames, to use in place of the cameras' own sources")
+                       "Folder of ready masks, MASKS/CAMERA/000000.png ... or masks.mkv, by "
+                       "the scene's frames, to use in place of the cameras' own sources")
                     ->type_name("DIR")
                     ->needs(scene);
             app.add_option("--pom", flags->pom,

@@ -11,6 +11,8 @@
 #include "test_program.h"
 #include "vantage/base/file.h"
 #include "vantage/base/test_support.h"
+#include "vantage/video/mask_writer.h"
+#include "vantage/video/open.h"
 
 namespace vantage {
 namespace {
@@ -122,6 +124,29 @@ TEST(Program, StagesAloneGiveWhatTheWholeWayGives) {
   const Outcome link = RunProgram(fmt::format("link '{}' -o '{}' --quiet", maps, tracks));
   ASSERT_EQ(link.status, 0) << link.err;
   EXPECT_EQ(ReadTextFile(tracks).value(), ReadTextFile(scene.out() / "tracks.csv").value());
+}
+
+TEST(Program, MapsFromMasksAsPicturesAndAsVideo) {
+  const SmallScene scene;
+  std::vector<std::string> maps;
+  for (const MaskFormat format : {MaskFormat::kPng, MaskFormat::kVideo}) {
+    const std::filesystem::path masks = scene.folder / fmt::format("masks{}", maps.size());
+    auto writer = MaskWriter::Create(masks / "one", format, {160, 120}, 10, false);
+    ASSERT_TRUE(writer) << testing::MessageOf(writer);
+    auto source = OpenMasks(scene.folder / "masks");
+    ASSERT_TRUE(source) << testing::MessageOf(source);
+    cv::Mat mask;
+    for (int frame = 0; (*source)->Read(mask).value(); ++frame) {
+      ASSERT_TRUE(writer->Write(frame, mask));
+    }
+    ASSERT_TRUE(writer->Finish());
+    const std::string out = (masks / "maps.h5").string();
+    const Outcome outcome = RunProgram(fmt::format("occupancy '{}' --masks '{}' -o '{}' --quiet",
+                                                   scene.Write(), masks.string(), out));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    maps.push_back(ReadTextFile(out).value());
+  }
+  EXPECT_EQ(maps[0], maps[1]);
 }
 
 TEST(Program, FlagsWinOverTheScene) {

@@ -56,8 +56,14 @@ Status SceneMaskWriter::Write(FrameIndex frame, const std::vector<cv::Mat>& mask
 Status UseMasks(Scene& scene, const std::filesystem::path& folder) {
   for (SceneCamera& camera : scene.cameras) {
     const std::filesystem::path masks = folder / camera.name;
-    VANTAGE_ASSIGN_OR_RETURN(const FrameIndex first, LowestNumber(masks));
     camera.source.kind = SourceSpec::Kind::kMasks;
+    std::error_code code;
+    if (std::filesystem::exists(masks / kMaskVideoName, code)) {
+      camera.source.path = masks / kMaskVideoName;
+      camera.source.offset_frames = 0;
+      continue;
+    }
+    VANTAGE_ASSIGN_OR_RETURN(const FrameIndex first, LowestNumber(masks));
     camera.source.path = masks / "%06d.png";
     camera.source.offset_frames = -first;
   }

@@ -33,7 +33,7 @@ class SceneMaskWriter {
 };
 
 /// Makes every camera of the scene read the masks of such a folder in place of its own source;
-/// their numbers are the scene's frames.
+/// their numbers are the scene's frames. Or FOLDER/CAMERA/masks.mkv, begun at frame 0 of the scene.
 Status UseMasks(Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace vantage::app
