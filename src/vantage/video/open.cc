@@ -197,16 +197,11 @@ class MaskSource final : public FrameSource {
   Result<bool> Read(cv::Mat& frame) override {
     VANTAGE_ASSIGN_OR_RETURN(const bool more, pictures_->Read(picture_));
     if (!more) return false;
-    cv::Mat blue, green, red, difference;
-    cv::extractChannel(picture_, blue, 0);
-    cv::extractChannel(picture_, green, 1);
-    cv::extractChannel(picture_, red, 2);
-    constexpr double kNoise = 16;
-    if (cv::norm(blue, green, cv::NORM_INF) > kNoise ||
-        cv::norm(green, red, cv::NORM_INF) > kNoise) {
+    if (internal::LargestChannelDifference(picture_) > internal::kChannelNoise) {
       return Fail("{}: frame {} is a colour picture; a mask is black and white", info_.name, next_);
     }
-    cv::threshold(green, frame, 127, 255, cv::THRESH_BINARY);
+    cv::extractChannel(picture_, frame, 1);
+    cv::threshold(frame, frame, 127, 255, cv::THRESH_BINARY);
     ++next_;
     return true;
   }

@@ -178,6 +178,14 @@ Result<cv::Mat> ReadPicture(const fs::path& path) {
   }
 }
 
+double LargestChannelDifference(const cv::Mat& picture) {
+  std::array<cv::Mat, 3> channels;
+  cv::split(picture, channels.data());
+  const auto& [blue, green, red] = channels;
+  return std::max({cv::norm(blue, green, cv::NORM_INF), cv::norm(green, red, cv::NORM_INF),
+                   cv::norm(red, blue, cv::NORM_INF)});
+}
+
 bool HasPictureExtension(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -24,6 +24,11 @@ Result<ImageSize> PictureSize(const std::filesystem::path& path);
 /// channels, 16 bits are scaled to 8, transparency is dropped. Fails on a truncated picture.
 Result<cv::Mat> ReadPicture(const std::filesystem::path& path);
 
+/// The largest difference between two channels of a pixel of a CV_8UC3 picture: 0 when it is grey,
+/// at most kChannelNoise when it was grey before lossy compression.
+double LargestChannelDifference(const cv::Mat& picture);
+constexpr double kChannelNoise = 16;
+
 /// True for the names of pictures that ReadPicture may read (.png .jpg .jpeg .bmp .pgm .ppm).
 bool HasPictureExtension(const std::filesystem::path& path);
 

@@ -3,7 +3,6 @@
 #include "vantage/video/sequence.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -85,14 +84,6 @@ Result<TemporalRange> ReadTemporalRange(const fs::path& path) {
   return range;
 }
 
-/// The largest difference between the channels of a CV_8UC3 picture.
-double Colorfulness(const cv::Mat& picture) {
-  std::array<cv::Mat, 3> channels;
-  cv::split(picture, channels.data());
-  return std::max(cv::norm(channels[0], channels[1], cv::NORM_INF),
-                  cv::norm(channels[1], channels[2], cv::NORM_INF));
-}
-
 /// Finds the region of interest of a sequence, or says in a note why none is used.
 Status ReadRegion(TruthSequence& sequence) {
   for (const char* name : {"ROI.bmp", "ROI.png", "ROI.jpg"}) {
@@ -100,12 +91,11 @@ Status ReadRegion(TruthSequence& sequence) {
     std::error_code code;
     if (!fs::exists(path, code)) continue;
     VANTAGE_ASSIGN_OR_RETURN(const cv::Mat picture, internal::ReadPicture(path));
-    constexpr double kNoise = 16;  // of lossy compression
     if (picture.cols != sequence.size.width || picture.rows != sequence.size.height) {
       sequence.notes.push_back(fmt::format("{} is not used: it has {} x {} px, the truth {} x {}",
                                            name, picture.cols, picture.rows, sequence.size.width,
                                            sequence.size.height));
-    } else if (Colorfulness(picture) > kNoise) {
+    } else if (internal::LargestChannelDifference(picture) > internal::kChannelNoise) {
       sequence.notes.push_back(
           fmt::format("{} is not used: it is a coloured picture, not a mask", name));
     } else {
@@ -215,7 +205,7 @@ Result<cv::Mat> ReadTruthMask(const fs::path& path, ImageSize size) {
     return Fail("{}: has {} x {} px; the first truth mask has {} x {}", path.string(), picture.cols,
                 picture.rows, size.width, size.height);
   }
-  if (Colorfulness(picture) > 0) {
+  if (internal::LargestChannelDifference(picture) > 0) {
     return Fail("{}: is a colour picture; a truth mask is grey", path.string());
   }
   cv::Mat labels;
