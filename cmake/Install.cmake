@@ -13,7 +13,8 @@ foreach(module IN LISTS VANTAGE_MODULES)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/vantage/${module}
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vantage
           FILES_MATCHING PATTERN "*.h"
-          PATTERN "test_*.h" EXCLUDE PATTERN "*_oracle.h" EXCLUDE) # of the tests
+          PATTERN "test_*.h" EXCLUDE PATTERN "*_oracle.h" EXCLUDE # of the tests
+          PATTERN "*-inl.h" EXCLUDE)                              # of kernels
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/generated/vantage/base/version.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vantage/base)

@@ -3,7 +3,12 @@
 #include "vantage/background/mixture.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <new>
 #include <opencv2/core.hpp>
+#include <string_view>
 #include <utility>
 
 #include "vantage/background/color.h"
@@ -15,28 +20,31 @@ namespace {
 constexpr int kMaxSide_px = 16384;
 // Rows per task: fixed, so that the work is cut the same way for every thread count.
 constexpr int kBlockRows = 8;
-// A weight that decays unseen would end as a denormal number, on which arithmetic is slow.
+// Less is forgotten when the decay is written into the weights.
 constexpr float kForgottenWeight = 1e-12F;
+// That happens before s falls below this: every 2,760 frames at alpha = 0.005.
+constexpr double kLeastScale = 1e-6;
 
-/// w_a / sigma_a < w_b / sigma_b, without root and quotient.
-template <class Gaussian>
-bool LessFit(const Gaussian& a, const Gaussian& b) {
-  return a.weight * a.weight * b.variance < b.weight * b.weight * a.variance;
+void ForEachRow(int threads, int rows, const std::function<void(int)>& do_row) {
+  ParallelFor(threads, (rows + kBlockRows - 1) / kBlockRows, [&](std::int64_t block) {
+    const int begin = static_cast<int>(block) * kBlockRows;
+    const int end = std::min(begin + kBlockRows, rows);
+    for (int row = begin; row < end; ++row) do_row(row);
+  });
 }
 
-/// Restores the order of fitness after a step, which moves one Gaussian; `slot` follows its own.
-template <class Gaussian>
-void SortByFitness(Gaussian* mixture, int count, std::uint8_t& slot) {
-  for (int i = 1; i < count; ++i) {
-    for (int k = i; k > 0 && LessFit(mixture[k - 1], mixture[k]); --k) {
-      std::swap(mixture[k - 1], mixture[k]);
-      if (slot == k) {
-        --slot;
-      } else if (slot == k - 1) {
-        ++slot;
-      }
-    }
-  }
+/// Checks a matrix that comes with a frame; `what` starts the sentence.
+Status CheckMatrix(const cv::Mat& matrix, ImageSize size, int type, std::string_view what) {
+  if (matrix.type() == type && matrix.cols == size.width && matrix.rows == size.height) return {};
+  return Fail("background: {} {}x{} px of type {}; they must be {}x{} px of type {}", what,
+              matrix.cols, matrix.rows, cv::typeToString(matrix.type()), size.width, size.height,
+              cv::typeToString(type));
+}
+
+/// w_a / sigma_a < w_b / sigma_b, without root and quotient.
+bool LessFit(GaussianBlock& a, GaussianBlock& b, int pixel) {
+  return a.weight(pixel) * a.weight(pixel) * b.variance(pixel) <
+         b.weight(pixel) * b.weight(pixel) * a.variance(pixel);
 }
 
 }  // namespace
@@ -89,21 +97,15 @@ Result<MixtureModel> MixtureModel::Create(ImageSize size, const MixtureOptions& 
     return Fail("background: frames of {}x{} px; each side must be between 1 and {} px", size.width,
                 size.height, kMaxSide_px);
   }
-  const auto squared = [](double sigma) { return static_cast<float>(sigma * sigma); };
   MixtureModel model;
   model.size_ = size;
   model.options_ = options;
-  model.constants_ = {.gaussians = options.gaussians,
-                      .background_share = static_cast<float>(options.background_share),
-                      .match_sigmas_squared = squared(options.match_sigmas),
-                      .initial_weight = static_cast<float>(options.initial_weight),
-                      .initial_variance = squared(options.sigma().initial),
-                      .min_variance = squared(options.sigma().min),
-                      .absorb_weight = static_cast<float>(options.absorb_weight)};
-  const auto pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+  const auto blocks =
+      static_cast<std::size_t>(model.row_blocks()) * static_cast<std::size_t>(size.height);
   try {
-    model.gaussians_.resize(pixels * static_cast<std::size_t>(options.gaussians));
-    model.slots_.resize(pixels);
+    model.fittest_.resize(blocks);
+    model.others_.resize(blocks * static_cast<std::size_t>(options.gaussians - 1));
+    model.slots_.resize(blocks * GaussianBlock::kPixels);
   } catch (const std::bad_alloc&) {
     return Fail(
         "background: not enough memory for {} Gaussians at each of {}x{} px; use smaller frames",
@@ -112,138 +114,187 @@ Result<MixtureModel> MixtureModel::Create(ImageSize size, const MixtureOptions& 
   return model;
 }
 
-Status MixtureModel::Apply(const cv::Mat& bgr, cv::Mat& mask, int threads) {
+Status MixtureModel::Apply(const cv::Mat& bgr, cv::Mat& mask, int threads, const cv::Mat& held) {
   if (bgr.empty()) return Fail("background: frame {} is empty", frames_);
   if (bgr.type() != CV_8UC3 || bgr.cols != size_.width || bgr.rows != size_.height) {
     return Fail(
         "background: frame {} is {}x{} px of type {}; it must be {}x{} px of 8-bit BGR (CV_8UC3)",
         frames_, bgr.cols, bgr.rows, cv::typeToString(bgr.type()), size_.width, size_.height);
   }
-  const cv::Mat frame = bgr;  // `mask` may be the same object
+  if (!held.empty()) {
+    VANTAGE_RETURN_IF_ERROR(CheckMatrix(held, size_, CV_8UC1, "the held pixels are"));
+  }
+  // `mask` may be the same object as either.
+  const cv::Mat frame = bgr;
+  const cv::Mat held_pixels = held;
   mask.create(size_.height, size_.width, CV_8UC1);
-  const bool first = frames_ == 0;
-  // eq. 6
-  const double alpha = options_.rate == LearningRate::kModified
-                           ? std::max(options_.alpha, 1.0 / (1.0 + static_cast<double>(frames_)))
-                           : options_.alpha;
-  const auto convert = options_.color == ColorSpace::kLuv ? LuvFromBgr : FloatFromBgr;
-  const auto do_row = [&](int row, float* colors) {
-    convert(frame.ptr(row), colors, size_.width);
-    std::uint8_t* out = mask.ptr(row);
-    const std::size_t start = static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.width);
-    Gaussian* mixture = &gaussians_[start * static_cast<std::size_t>(constants_.gaussians)];
-    for (int x = 0; x < size_.width; ++x, mixture += constants_.gaussians, colors += 3) {
-      if (first) {
-        FillPixel(mixture, colors);
-        out[x] = 0;
-      } else {
-        std::uint8_t& slot = slots_[start + static_cast<std::size_t>(x)];
-        out[x] = StepPixel(mixture, colors, static_cast<float>(alpha), slot) ? 0 : 255;
-      }
-    }
+  const bool fill = learnt_frames_ == 0;
+  if (fill) mask = 0;
+  const MixtureStep step = NextStep();
+  const auto do_row = [&](int row) {
+    if (fill) return FillRow(frame.ptr(row), row);
+    const std::size_t block =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(row_blocks());
+    StepRow(step, {.width = size_.width,
+                   .bgr = frame.ptr(row),
+                   .held = held_pixels.empty() ? nullptr : held_pixels.ptr(row),
+                   .fittest = &fittest_[block],
+                   .others = step.gaussians > 1 ? &BlockOf(block, 1) : nullptr,
+                   .slots = &slots_[block * GaussianBlock::kPixels],
+                   .mask = mask.ptr(row)});
   };
-  ParallelFor(threads, (size_.height + kBlockRows - 1) / kBlockRows, [&](std::int64_t block) {
-    std::vector<float> colors(3 * static_cast<std::size_t>(size_.width));
-    const int begin = static_cast<int>(block) * kBlockRows;
-    const int end = std::min(begin + kBlockRows, size_.height);
-    for (int row = begin; row < end; ++row) do_row(row, colors.data());
-  });
+  ForEachRow(threads, size_.height, do_row);
   ++frames_;
+  ++learnt_frames_;
   return {};
 }
 
-/// The first frame fills the model, as a step with alpha' = 1 would.
-void MixtureModel::FillPixel(Gaussian* mixture, const float* color) const {
-  mixture[0] = {
-      .mean = {color[0], color[1], color[2]}, .variance = constants_.initial_variance, .weight = 1};
-  for (int k = 1; k < constants_.gaussians; ++k) {
-    mixture[k] = {.mean = {}, .variance = constants_.initial_variance, .weight = 0};
-  }
+/// Constants of the next step; moves the scale on.
+MixtureStep MixtureModel::NextStep() {
+  // eq. 6
+  const double alpha =
+      options_.rate == LearningRate::kModified
+          ? std::max(options_.alpha, 1.0 / (1.0 + static_cast<double>(learnt_frames_)))
+          : options_.alpha;
+  const double before = scale_;
+  const double decayed = (1 - alpha) * before;
+  const bool rescale = learnt_frames_ > 0 && decayed < kLeastScale;
+  scale_ = learnt_frames_ == 0 || rescale ? 1 : decayed;
+  const auto squared = [](double sigma) { return static_cast<float>(sigma * sigma); };
+  return {.gaussians = options_.gaussians,
+          .luv = options_.color == ColorSpace::kLuv,
+          .rescale = rescale,
+          .alpha = static_cast<float>(alpha),
+          .match_sigmas_squared = squared(options_.match_sigmas),
+          .initial_variance = squared(options_.sigma().initial),
+          .min_variance = squared(options_.sigma().min),
+          .share = static_cast<float>(options_.background_share / before),
+          .increment = static_cast<float>(alpha / scale_),
+          .new_weight = static_cast<float>(std::max(options_.initial_weight, alpha) / scale_),
+          .total = static_cast<float>(1 / scale_),
+          .decay = rescale ? static_cast<float>(decayed) : 1,
+          .hold = static_cast<float>(before / scale_),
+          .forgotten = rescale ? kForgottenWeight : 0};
 }
 
-/// True when the pixel is background. `slot` becomes the Gaussian that has taken the colour.
-bool MixtureModel::StepPixel(Gaussian* mixture, const float* color, float alpha,
-                             std::uint8_t& slot) const {
-  const int count = constants_.gaussians;
-  int match = 0;        // the fittest Gaussian that matches
-  float d_squared = 0;  // ||I - mu||^2, summed over the three channels
-  float fitter = 0;     // weight of all fitter Gaussians
-  for (; match < count && mixture[match].weight > 0; ++match) {
-    const Gaussian& g = mixture[match];
-    const float d0 = color[0] - g.mean[0];
-    const float d1 = color[1] - g.mean[1];
-    const float d2 = color[2] - g.mean[2];
-    d_squared = d0 * d0 + d1 * d1 + d2 * d2;
-    if (d_squared < constants_.match_sigmas_squared * g.variance) break;
-    fitter += g.weight;
+/// The first frame fills the model, as a step with alpha' = 1 would.
+void MixtureModel::FillRow(const std::uint8_t* bgr, int row) {
+  constexpr int kPixels = GaussianBlock::kPixels;
+  const std::size_t width = static_cast<std::size_t>(row_blocks()) * kPixels;
+  std::vector<float> colors(3 * width);  // those of the padding stay black
+  (options_.color == ColorSpace::kLuv ? LuvFromBgr : FloatFromBgr)(bgr, colors.data(), size_.width);
+  const double sigma = options_.sigma().initial;
+  const auto variance = static_cast<float>(sigma * sigma);
+  std::size_t block = static_cast<std::size_t>(row) * static_cast<std::size_t>(row_blocks());
+  std::fill_n(slots_.begin() + static_cast<std::ptrdiff_t>(block * kPixels), width, 0);
+  const float* color = colors.data();
+  for (std::size_t x = 0; x < width; x += kPixels, ++block) {
+    for (int k = 0; k < options_.gaussians; ++k) {
+      GaussianBlock& g = BlockOf(block, k);
+      g = {};
+      for (int i = 0; i < kPixels; ++i) g.variance(i) = variance;
+    }
+    GaussianBlock& g = fittest_[block];
+    for (int i = 0; i < kPixels; ++i, color += 3) {
+      for (int c = 0; c < 3; ++c) g.mean(i)[c * kPixels] = color[c];
+      g.weight(i) = 1;
+    }
   }
-  const bool matched = match < count && mixture[match].weight > 0;
-  // Among the first N of eq. 1: those before it do not exceed T yet (eq. 2, read the right way).
-  const bool background = matched && fitter <= constants_.background_share;
-
-  for (int k = 0; k < count; ++k) {
-    float& weight = mixture[k].weight;
-    weight = weight < kForgottenWeight ? 0 : (1 - alpha) * weight;
-  }
-  if (matched) {
-    Gaussian& g = mixture[match];
-    g.weight += alpha;                                                                   // eq. 3
-    for (int c = 0; c < 3; ++c) g.mean[c] = (1 - alpha) * g.mean[c] + alpha * color[c];  // eq. 4
-    g.variance = std::max((1 - alpha) * g.variance + alpha * d_squared,                  // eq. 5
-                          constants_.min_variance);
-  } else {
-    match = count - 1;
-    mixture[match] = {.mean = {color[0], color[1], color[2]},
-                      .variance = constants_.initial_variance,
-                      .weight = std::max(constants_.initial_weight, alpha)};
-    float sum = 0;
-    for (int k = 0; k < count; ++k) sum += mixture[k].weight;
-    for (int k = 0; k < count; ++k) mixture[k].weight /= sum;
-  }
-  slot = static_cast<std::uint8_t>(match);
-  SortByFitness(mixture, count, slot);
-  return background;
 }
 
 cv::Mat MixtureModel::BackgroundImage(const cv::Rect& region) const {
+  constexpr int kPixels = GaussianBlock::kPixels;
   const cv::Rect inside = region & cv::Rect(0, 0, size_.width, size_.height);
   cv::Mat image(inside.height, inside.width, CV_8UC3);
   const auto convert = options_.color == ColorSpace::kLuv ? BgrFromLuv : BgrFromFloat;
   for (int y = 0; y < inside.height; ++y) {
     const std::size_t start =
-        static_cast<std::size_t>(inside.y + y) * static_cast<std::size_t>(size_.width) +
-        static_cast<std::size_t>(inside.x);
-    const Gaussian* mixture = &gaussians_[start * static_cast<std::size_t>(constants_.gaussians)];
-    for (int x = 0; x < inside.width; ++x, mixture += constants_.gaussians) {
-      convert(mixture->mean, image.ptr(y, x), 1);
+        static_cast<std::size_t>(inside.y + y) * static_cast<std::size_t>(row_blocks());
+    for (int x = 0; x < inside.width; ++x) {
+      const int column = inside.x + x;
+      const float* mean =
+          fittest_[start + static_cast<std::size_t>(column / kPixels)].mean(column % kPixels);
+      const float color[3] = {mean[0], mean[kPixels], mean[2 * kPixels]};
+      convert(color, image.ptr(y, x), 1);
     }
   }
   return image;
 }
 
 Status MixtureModel::Absorb(const cv::Mat& pixels) {
-  if (pixels.type() != CV_8UC1 || pixels.cols != size_.width || pixels.rows != size_.height) {
-    return Fail(
-        "background: the pixels to absorb are {}x{} px of type {}; they must be {}x{} px of "
-        "type CV_8UC1",
-        pixels.cols, pixels.rows, cv::typeToString(pixels.type()), size_.width, size_.height);
-  }
-  if (frames_ == 0) return {};
-  const float beta = constants_.absorb_weight;
-  std::size_t pixel = 0;
+  VANTAGE_RETURN_IF_ERROR(CheckMatrix(pixels, size_, CV_8UC1, "the pixels to absorb are"));
+  if (learnt_frames_ == 0) return {};
+  constexpr int kPixels = GaussianBlock::kPixels;
+  constexpr int kValues = GaussianBlock::kPlanes * kPixels;
+  const auto beta = static_cast<float>(options_.absorb_weight);
+  const auto added = static_cast<float>(options_.absorb_weight / scale_);
   for (int y = 0; y < size_.height; ++y) {
     const std::uint8_t* chosen = pixels.ptr(y);
-    for (int x = 0; x < size_.width; ++x, ++pixel) {
+    for (int x = 0; x < size_.width; ++x) {
       if (chosen[x] == 0) continue;
-      Gaussian* mixture = &gaussians_[pixel * static_cast<std::size_t>(constants_.gaussians)];
-      std::uint8_t& slot = slots_[pixel];
+      const std::size_t block =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(row_blocks()) +
+          static_cast<std::size_t>(x / kPixels);
+      const int pixel = x % kPixels;
+      std::uint8_t& slot = slots_[block * kPixels + static_cast<std::size_t>(pixel)];
       // eq. 17; the sum stays 1 (eq. 18).
-      mixture[slot].weight += beta;
-      for (int k = 0; k < constants_.gaussians; ++k) mixture[k].weight /= 1 + beta;
-      SortByFitness(mixture, constants_.gaussians, slot);
+      BlockOf(block, slot).weight(pixel) += added;
+      for (int k = 0; k < options_.gaussians; ++k) BlockOf(block, k).weight(pixel) /= 1 + beta;
+      for (; slot > 0; --slot) {
+        GaussianBlock& a = BlockOf(block, slot - 1);
+        GaussianBlock& b = BlockOf(block, slot);
+        if (!LessFit(a, b, pixel)) break;
+        for (int i = pixel; i < kValues; i += kPixels) std::swap(a.values[i], b.values[i]);
+      }
     }
   }
   return {};
+}
+
+Status MixtureModel::Relight(const cv::Mat& gain, int threads) {
+  VANTAGE_RETURN_IF_ERROR(CheckMatrix(gain, size_, CV_32FC3, "the factors of the light are"));
+  for (int y = 0; y < size_.height; ++y) {
+    const float* factors = gain.ptr<float>(y);
+    for (int i = 0; i < 3 * size_.width; ++i) {
+      if (!(factors[i] >= 0) || std::isinf(factors[i])) {
+        return Fail("background: the light at ({}, {}) is multiplied by {}; it must be at least 0",
+                    i / 3, y, factors[i]);
+      }
+    }
+  }
+  constexpr int kPixels = GaussianBlock::kPixels;
+  const bool luv = options_.color == ColorSpace::kLuv;
+  ForEachRow(threads, size_.height, [&](int y) {
+    const float* factors = gain.ptr<float>(y);
+    for (int x = 0; x < size_.width; ++x, factors += 3) {
+      const std::size_t block =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(row_blocks()) +
+          static_cast<std::size_t>(x / kPixels);
+      for (int k = 0; k < options_.gaussians; ++k) {
+        GaussianBlock& g = BlockOf(block, k);
+        if (g.weight(x % kPixels) == 0) continue;
+        float* mean = g.mean(x % kPixels);
+        std::array<float, 3> color = {mean[0], mean[kPixels], mean[2 * kPixels]};
+        if (luv) color = LevelsFromLuv(color);
+        for (std::size_t c = 0; c < 3; ++c) {
+          color[c] = std::clamp(color[c] * factors[c], 0.0F, 255.0F);
+        }
+        if (luv) color = LuvFromLevels(color);
+        for (std::size_t c = 0; c < 3; ++c) mean[c * kPixels] = color[c];
+      }
+    }
+  });
+  return {};
+}
+
+int MixtureModel::row_blocks() const {
+  return (size_.width + GaussianBlock::kPixels - 1) / GaussianBlock::kPixels;
+}
+
+GaussianBlock& MixtureModel::BlockOf(std::size_t block, int k) {
+  if (k == 0) return fittest_[block];
+  return others_[block * static_cast<std::size_t>(options_.gaussians - 1) +
+                 static_cast<std::size_t>(k - 1)];
 }
 
 }  // namespace vantage

@@ -6,6 +6,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "vantage/background/mixture_kernel.h"
 #include "vantage/base/options.h"
 #include "vantage/base/result.h"
 #include "vantage/geometry/camera.h"
@@ -62,15 +63,23 @@ void VisitOptions(MixtureOptions& options, OptionVisitor& visitor);
 Status Validate(const MixtureOptions& options);
 
 /// Background model of one fixed camera: at each pixel a mixture of K Gaussians over a colour,
-/// after Stauffer and Grimson (thesis 3.3.1).
+/// after Stauffer and Grimson (thesis 3.3.1). Its results are the same bits for every thread count
+/// and every instruction set.
 class MixtureModel {
  public:
   static Result<MixtureModel> Create(ImageSize size, const MixtureOptions& options);
 
   /// One step. `bgr` is CV_8UC3 of the model's size; `mask` becomes CV_8UC1 of that size, 255 where
-  /// the pixel is foreground, else 0. Same bits for every thread count. Fails on an empty frame and
-  /// on one of another size or type; the model is then as before.
-  Status Apply(const cv::Mat& bgr, cv::Mat& mask, int threads);
+  /// the pixel is foreground, else 0.
+  ///
+  /// `held` (CV_8UC1 of the model's size, or empty for none) is not 0 where an object is known to
+  /// stand. What is foreground there takes part in matching, mean and variance, but the weights of
+  /// its mixture neither grow nor decay, so that it does not fade into the background; a colour
+  /// that matches nothing still replaces the least fit Gaussian. What is background there learns
+  /// as everywhere.
+  ///
+  /// Fails on an empty frame and on matrices of another size or type; the model is then as before.
+  Status Apply(const cv::Mat& bgr, cv::Mat& mask, int threads, const cv::Mat& held = {});
 
   /// Mean of the fittest Gaussian of each pixel (eq. 8) inside `region`, CV_8UC3 blue green red.
   /// Black before the first frame.
@@ -81,33 +90,36 @@ class MixtureModel {
   /// 0 for background from the next frame on (eq. 17).
   Status Absorb(const cv::Mat& pixels);
 
+  /// After a sudden change of light: multiplies the mean of every Gaussian by the factors `gain`
+  /// (CV_32FC3 of the model's size; blue, green, red; of 8-bit levels, which stay within [0, 255]).
+  /// Fails on another size or type and on factors that are negative or not finite; the model is
+  /// then as before.
+  Status Relight(const cv::Mat& gain, int threads);
+
+  /// The next frame fills the model anew, as the first one did; the modified rate starts again.
+  void Restart() { learnt_frames_ = 0; }
+
   ImageSize size() const { return size_; }
   /// Frames applied.
   std::int64_t frames() const { return frames_; }
 
  private:
-  struct Gaussian {
-    float mean[3];
-    float variance;
-    float weight;  ///< 0: not in use
-  };
-  struct Constants {
-    int gaussians;
-    float background_share, match_sigmas_squared, initial_weight, initial_variance, min_variance;
-    float absorb_weight;
-  };
-
   MixtureModel() = default;
-  void FillPixel(Gaussian* mixture, const float* color) const;
-  bool StepPixel(Gaussian* mixture, const float* color, float alpha, std::uint8_t& slot) const;
+  int row_blocks() const;
+  /// The Gaussian k of all pixels of a block; blocks are numbered row by row.
+  GaussianBlock& BlockOf(std::size_t block, int k);
+  MixtureStep NextStep();
+  void FillRow(const std::uint8_t* bgr, int row);
 
   ImageSize size_;
   MixtureOptions options_;
-  Constants constants_{};
   std::int64_t frames_ = 0;
-  /// K in a row for each pixel, fittest first.
-  std::vector<Gaussian> gaussians_;
-  /// Which of them took the last frame's colour.
+  std::int64_t learnt_frames_ = 0;  ///< since the model was filled, that frame included
+  double scale_ = 1;                ///< s of MixtureStep
+  /// Rows are padded to whole blocks. A frame mostly touches the fittest Gaussians only: they are
+  /// apart from the others, of which each block has K - 1 in falling order of fitness.
+  std::vector<GaussianBlock> fittest_, others_;
+  /// Which Gaussian took the last frame's colour, for each pixel of each block.
   std::vector<std::uint8_t> slots_;
 };
 

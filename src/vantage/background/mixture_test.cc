@@ -51,26 +51,28 @@ std::vector<cv::Mat> FlickeringFrames(ImageSize size, int count, unsigned seed) 
   return frames;
 }
 
-/// One pixel's mixture step by step as the text has it: sorted anew in each step, N counted out. In
-/// the same floats, since under the modified rate the first weights are often equal but for
+/// One pixel's mixture step by step as the text has it: sorted anew in each step, N counted out.
+/// Weights are compared as floats: under the modified rate the first ones are often equal but for
 /// rounding.
 class PlainMixture {
  public:
   explicit PlainMixture(const MixtureOptions& options) : o_(options) {}
 
   bool Step(const std::array<float, 3>& color) {
-    const auto alpha = static_cast<float>(
-        o_.rate == LearningRate::kModified ? std::max(o_.alpha, 1.0 / (1 + t_)) : o_.alpha);
+    const double rate =
+        o_.rate == LearningRate::kModified ? std::max(o_.alpha, 1.0 / (1 + t_)) : o_.alpha;
+    const auto alpha = static_cast<float>(rate);
     const auto initial = static_cast<float>(o_.sigma().initial * o_.sigma().initial);
     if (t_++ == 0) {
       all_.push_back({color, initial, 1});
       return true;
     }
     std::stable_sort(all_.begin(), all_.end(), [](const One& a, const One& b) {
-      return a.weight * a.weight * b.variance > b.weight * b.weight * a.variance;
+      return static_cast<float>(a.weight * a.weight / a.variance) >
+             static_cast<float>(b.weight * b.weight / b.variance);
     });
     std::ptrdiff_t n = 0;
-    for (float sum = 0; sum <= static_cast<float>(o_.background_share); ++n) {
+    for (double sum = 0; static_cast<float>(sum) <= static_cast<float>(o_.background_share); ++n) {
       if (n == std::ssize(all_)) break;
       sum += all_[static_cast<std::size_t>(n)].weight;
     }
@@ -83,10 +85,10 @@ class PlainMixture {
     const auto match = std::find_if(all_.begin(), all_.end(),
                                     [&](const One& g) { return squared(g) < reach * g.variance; });
     const bool background = match != all_.end() && match - all_.begin() < n;
-    for (One& g : all_) g.weight = (1 - alpha) * g.weight;
+    for (One& g : all_) g.weight = (1 - rate) * g.weight;
     if (match != all_.end()) {
       const float distance = squared(*match);
-      match->weight += alpha;
+      match->weight += rate;
       for (std::size_t c = 0; c < 3; ++c) {
         match->mean[c] = (1 - alpha) * match->mean[c] + alpha * color[c];
       }
@@ -95,8 +97,8 @@ class PlainMixture {
       return background;
     }
     if (std::ssize(all_) == o_.gaussians) all_.pop_back();
-    all_.push_back({color, initial, std::max(static_cast<float>(o_.initial_weight), alpha)});
-    float total = 0;
+    all_.push_back({color, initial, std::max(o_.initial_weight, rate)});
+    double total = 0;
     for (const One& g : all_) total += g.weight;
     for (One& g : all_) g.weight /= total;
     return false;
@@ -105,7 +107,8 @@ class PlainMixture {
  private:
   struct One {
     std::array<float, 3> mean;
-    float variance, weight;
+    float variance;
+    double weight;
   };
   MixtureOptions o_;
   std::vector<One> all_;
