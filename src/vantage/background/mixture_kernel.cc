@@ -19,6 +19,8 @@ namespace vantage::HWY_NAMESPACE {
 namespace {
 
 constexpr int kPixels = GaussianBlock::kPixels;
+// Pixels whose colours are converted at a time: 1.5 KiB, within the first cache.
+constexpr int kTilePixels = 8 * kPixels;
 constexpr std::size_t kBlockFloats = sizeof(GaussianBlock) / sizeof(float);
 
 using DF = HWY_CAPPED(float, kPixels);
@@ -199,64 +201,94 @@ HWY_INLINE V LoadBytes(const std::uint8_t* in) {
   return hn::ConvertTo(DF(), hn::PromoteTo(DI(), hn::LoadU(DLevel(), in)));
 }
 
-/// The 16 pixels of one block.
-template <bool kLuv>
-HWY_INLINE void StepBlock(const MixtureStep& step, const std::uint8_t* bgr,
-                          const std::uint8_t* held, GaussianBlock* fittest, GaussianBlock* others,
-                          std::uint8_t* slots, std::uint8_t* mask) {
-  const DF d;
-  const HWY_CAPPED(std::uint8_t, kPixels) bytes;
-  HWY_ALIGN std::uint8_t levels[3][kPixels];
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(bytes)) {
-    hn::Vec<decltype(bytes)> blue, green, red;
-    hn::LoadInterleaved3(bytes, bgr + 3 * i, blue, green, red);
-    hn::Store(blue, bytes, levels[0] + i);
-    hn::Store(green, bytes, levels[1] + i);
-    hn::Store(red, bytes, levels[2] + i);
+/// The levels of the pixels of a tile, channel by channel.
+HWY_INLINE void Deinterleave(const std::uint8_t* bgr, int pixels,
+                             std::uint8_t (&levels)[3][kTilePixels]) {
+  const HWY_CAPPED(std::uint8_t, kPixels) d;
+  for (int x = 0; x < pixels; x += static_cast<int>(hn::Lanes(d))) {
+    hn::Vec<decltype(d)> blue, green, red;
+    hn::LoadInterleaved3(d, bgr + 3 * x, blue, green, red);
+    hn::Store(blue, d, levels[0] + x);
+    hn::Store(green, d, levels[1] + x);
+    hn::Store(red, d, levels[2] + x);
   }
-  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
-    Color<V> color = {LoadBytes(levels[0] + i), LoadBytes(levels[1] + i), LoadBytes(levels[2] + i)};
-    if constexpr (kLuv) color = LuvFromLevels(d, color);
-    float* first = &fittest->values[i];
+}
+
+HWY_INLINE Color<V> LoadLevels(const std::uint8_t (&levels)[3][kTilePixels], int x) {
+  return {LoadBytes(levels[0] + x), LoadBytes(levels[1] + x), LoadBytes(levels[2] + x)};
+}
+
+/// Steps whole blocks. `row` points to the first; its width is a multiple of 16.
+template <bool kLuv>
+HWY_INLINE void StepTile(const MixtureStep& step, const MixtureRow& row) {
+  const DF d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  HWY_ALIGN std::uint8_t levels[3][kTilePixels];
+  Deinterleave(row.bgr, row.width, levels);
+  // A loop of their own lets the processor work on several vectors at once, which the long way to
+  // L*u*v* needs.
+  HWY_ALIGN float luv[3][kTilePixels];
+  if constexpr (kLuv) {
+    for (int x = 0; x < row.width; x += lanes) {
+      const Color<V> color = LuvFromLevels(d, LoadLevels(levels, x));
+      hn::Store(color.c0, d, luv[0] + x);
+      hn::Store(color.c1, d, luv[1] + x);
+      hn::Store(color.c2, d, luv[2] + x);
+    }
+  }
+  for (int x = 0; x < row.width; x += lanes) {
+    Color<V> color;
+    if constexpr (kLuv) {
+      color = {hn::Load(d, luv[0] + x), hn::Load(d, luv[1] + x), hn::Load(d, luv[2] + x)};
+    } else {
+      color = LoadLevels(levels, x);
+    }
+    const int block = x / kPixels;
+    float* fittest = row.fittest[block].values + x % kPixels;
     V slot = hn::Zero(d);
     V foreground = hn::Zero(d);
-    if (step.rescale || !StepFittest(step, color, first)) {
-      const Lanes held_here =
-          hn::Gt(held == nullptr ? hn::Zero(d) : LoadBytes(held + i), hn::Zero(d));
-      float* second = others == nullptr ? nullptr : &others->values[i];
-      foreground = hn::IfThenElseZero(StepMixture(step, color, held_here, first, second, slot),
-                                      hn::Set(d, 255.0F));
+    if (step.rescale || !StepFittest(step, color, fittest)) {
+      const V held = row.held == nullptr ? hn::Zero(d) : LoadBytes(row.held + x);
+      float* others = step.gaussians == 1
+                          ? nullptr
+                          : row.others[block * (step.gaussians - 1)].values + x % kPixels;
+      const Lanes found =
+          StepMixture(step, color, hn::Gt(held, hn::Zero(d)), fittest, others, slot);
+      foreground = hn::IfThenElseZero(found, hn::Set(d, 255.0F));
     }
-    StoreBytes(slot, slots + i);
-    StoreBytes(foreground, mask + i);
+    StoreBytes(slot, row.slots + x);
+    StoreBytes(foreground, row.mask + x);
   }
 }
 
 template <bool kLuv>
 void StepRowIn(const MixtureStep& step, const MixtureRow& row) {
-  const std::uint8_t* bgr = row.bgr;
-  const std::uint8_t* held = row.held;
-  GaussianBlock* fittest = row.fittest;
-  GaussianBlock* others = step.gaussians > 1 ? row.others : nullptr;
-  std::uint8_t* slots = row.slots;
-  int x = 0;
-  for (; x + kPixels <= row.width; x += kPixels) {
-    StepBlock<kLuv>(step, bgr, held, fittest, others, slots, row.mask + x);
-    bgr += 3 * kPixels;
-    if (held != nullptr) held += kPixels;
-    ++fittest;
-    if (others != nullptr) others += step.gaussians - 1;
-    slots += kPixels;
-  }
-  if (x < row.width) {  // the last pixels, black ones beside them
-    const int rest = row.width - x;
-    std::uint8_t bgr_rest[3 * kPixels] = {};
-    std::uint8_t held_rest[kPixels] = {};
-    std::uint8_t mask_rest[kPixels];
-    std::copy_n(bgr, 3 * rest, bgr_rest);
-    if (held != nullptr) std::copy_n(held, rest, held_rest);
-    StepBlock<kLuv>(step, bgr_rest, held_rest, fittest, others, slots, mask_rest);
-    std::copy_n(mask_rest, rest, row.mask + x);
+  for (int x = 0; x < row.width; x += kTilePixels) {
+    const int pixels = std::min(kTilePixels, row.width - x);
+    const int block = x / kPixels;
+    MixtureRow tile = {.width = pixels,
+                       .bgr = row.bgr + 3 * x,
+                       .held = row.held == nullptr ? nullptr : row.held + x,
+                       .fittest = row.fittest + block,
+                       .others = row.others + block * (step.gaussians - 1),
+                       .slots = row.slots + x,
+                       .mask = row.mask + x};
+    if (pixels % kPixels == 0) {
+      StepTile<kLuv>(step, tile);
+      continue;
+    }
+    // The last pixels of the row, black ones beside them.
+    std::uint8_t bgr[3 * kTilePixels] = {};
+    std::uint8_t held[kTilePixels] = {};
+    std::uint8_t mask[kTilePixels];
+    std::copy_n(tile.bgr, 3 * pixels, bgr);
+    if (tile.held != nullptr) std::copy_n(tile.held, pixels, held);
+    tile.width = (pixels + kPixels - 1) / kPixels * kPixels;
+    tile.bgr = bgr;
+    tile.held = held;
+    tile.mask = mask;
+    StepTile<kLuv>(step, tile);
+    std::copy_n(mask, pixels, row.mask + x);
   }
 }
 
