@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "vantage/background/test_targets.h"
+
 namespace vantage {
 namespace {
 
@@ -24,15 +26,23 @@ std::vector<std::uint8_t> Samples() {
   return bgr;
 }
 
+double Linear(std::uint8_t level) {
+  static const std::array<double, 256> linear = [] {
+    std::array<double, 256> values{};
+    for (std::size_t i = 0; i < 256; ++i) {
+      const double v = static_cast<double>(i) / 255.0;
+      values[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    }
+    return values;
+  }();
+  return linear[level];
+}
+
 /// CIE 1976 by the book, in double.
 std::array<double, 3> ExactLuv(const std::uint8_t* bgr) {
-  const auto linear = [](int level) {
-    const double v = level / 255.0;
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-  };
-  const double b = linear(bgr[0]);
-  const double g = linear(bgr[1]);
-  const double r = linear(bgr[2]);
+  const double b = Linear(bgr[0]);
+  const double g = Linear(bgr[1]);
+  const double r = Linear(bgr[2]);
   const double x = 0.4124564 * r + 0.3575761 * g + 0.1804375 * b;
   const double y = 0.2126729 * r + 0.7151522 * g + 0.0721750 * b;
   const double z = 0.0193339 * r + 0.1191920 * g + 0.9503041 * b;
@@ -43,16 +53,47 @@ std::array<double, 3> ExactLuv(const std::uint8_t* bgr) {
   return {l, 13 * l * (4 * x / sum - 4 * 0.95047 / white), 13 * l * (9 * y / sum - 9 / white)};
 }
 
-TEST(Color, LuvFollowsTheFormulasWithinAHundredth) {
+TEST(Color, EveryLuvFollowsTheFormulasWithinAHundredthOnEveryTarget) {
+  testing::HighwayTargets targets;
+  std::vector<std::uint8_t> bgr(std::size_t{3} * 256 * 256);
+  std::vector<float> luv(bgr.size());
+  std::vector<float> other(bgr.size());
+  double worst = 0;
+  for (int b = 0; b < 256; ++b) {
+    for (std::size_t i = 0; i < bgr.size(); i += 3) {
+      bgr[i] = static_cast<std::uint8_t>(b);
+      bgr[i + 1] = static_cast<std::uint8_t>(i / 3 / 256);
+      bgr[i + 2] = static_cast<std::uint8_t>(i / 3 % 256);
+    }
+    targets.ChooseBest();
+    LuvFromBgr(bgr.data(), luv.data(), 256 * 256);
+    for (std::size_t i = 0; i < bgr.size(); i += 3) {
+      const std::array<double, 3> exact = ExactLuv(&bgr[i]);
+      for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(luv[i + c] - exact[c]));
+    }
+    if (b % 5 != 0) continue;
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      targets.Choose(t);
+      LuvFromBgr(bgr.data(), other.data(), 256 * 256);
+      ASSERT_EQ(luv, other) << b;
+    }
+  }
+  EXPECT_LT(worst, 0.01);
+}
+
+TEST(Color, OneColourByTheExactFormulasIsNearToThatOfARow) {
   const std::vector<std::uint8_t> bgr = Samples();
   std::vector<float> luv(bgr.size());
   LuvFromBgr(bgr.data(), luv.data(), static_cast<int>(bgr.size() / 3));
-  double worst = 0;
   for (std::size_t i = 0; i < bgr.size(); i += 3) {
-    const std::array<double, 3> exact = ExactLuv(&bgr[i]);
-    for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(luv[i + c] - exact[c]));
+    const std::array<float, 3> levels = {float(bgr[i]), float(bgr[i + 1]), float(bgr[i + 2])};
+    const std::array<float, 3> exact = LuvFromLevels(levels);
+    const std::array<float, 3> back = LevelsFromLuv(exact);
+    for (std::size_t c = 0; c < 3; ++c) {
+      ASSERT_NEAR(exact[c], luv[i + c], 0.01F);
+      ASSERT_NEAR(back[c], levels[c], 0.02F);
+    }
   }
-  EXPECT_LT(worst, 0.01);
 }
 
 TEST(Color, BlackWhiteAndRedHaveTheKnownValues) {

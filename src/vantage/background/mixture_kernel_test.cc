@@ -3,7 +3,6 @@
 #include "vantage/background/mixture_kernel.h"
 
 #include <gmock/gmock.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -16,43 +15,28 @@
 
 #include "vantage/background/mixture.h"
 #include "vantage/background/mixture_oracle.h"
+#include "vantage/background/test_frames.h"
+#include "vantage/background/test_targets.h"
 #include "vantage/base/test_support.h"
 #include "vantage/video/open.h"
 
 namespace vantage {
 namespace {
 
+using testing::FlickeringFrames;
+using testing::HighwayTargets;
 using testing::MessageOf;
 using testing::PlainMixtureModel;
 
 /// From Debian's package opencv-doc: PETS 2009 S2.L1 View_001, 768x576.
 constexpr const char* kVideo = "/usr/share/doc/opencv-doc/examples/data/vtest.avi";
 
-/// Every instruction set that this machine has, one after the other; the best again at the end.
-class EachTarget {
- public:
-  explicit EachTarget() : targets_(hwy::SupportedAndGeneratedTargets()) {}
-  ~EachTarget() { Use(0); }
-  EachTarget(const EachTarget&) = delete;
-  EachTarget& operator=(const EachTarget&) = delete;
-  std::size_t size() const { return targets_.size(); }
-  void Choose(std::size_t i) { Use(targets_[i]); }
-  void ChooseBest() { Use(0); }
-
- private:
-  static void Use(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  std::vector<std::int64_t> targets_;
-};
-
 bool Same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
 TEST(MixtureKernel, EveryTargetCanBeChosen) {
-  EachTarget targets;
+  HighwayTargets targets;
   std::set<std::string> names;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     targets.Choose(i);
@@ -82,7 +66,7 @@ TEST_P(MixtureOnVideo, EveryTargetGivesTheMasksOfThePlainModel) {
   PlainMixtureModel plain(size, options);
   MixtureModel model = MixtureModel::Create(size, options).value();
   MixtureModel threaded = MixtureModel::Create(size, options).value();
-  EachTarget targets;
+  HighwayTargets targets;
   std::vector<PartModel> parts;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const cv::Rect part(250 + static_cast<int>(i), 150, 211, 160);
@@ -115,6 +99,68 @@ TEST_P(MixtureOnVideo, EveryTargetGivesTheMasksOfThePlainModel) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     EXPECT_TRUE(Same(model.BackgroundImage(parts[i].part), parts[i].model.BackgroundImage()));
   }
+}
+
+cv::Mat RandomPixels(ImageSize size, unsigned percent, std::mt19937& random) {
+  cv::Mat pixels(size.height, size.width, CV_8UC1);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      pixels.ptr(y)[x] = static_cast<uchar>(random() % 100 < percent ? 1 + random() % 255 : 0);
+    }
+  }
+  return pixels;
+}
+
+TEST(MixtureKernel, AnySizeAndOptionsGiveTheSameBitsOnEveryTargetAndThePlainMasks) {
+  const std::vector<ImageSize> sizes = {{1, 1},  {17, 3},  {16, 9},  {15, 2},
+                                        {33, 8}, {130, 4}, {129, 1}, {5, 21}};
+  const std::vector<double> alphas = {0.005, 0.03, 0.5, 1, 0.01, 0.002, 0.2, 0.03};
+  std::mt19937 random(5);
+  HighwayTargets targets;
+  int different = 0;
+  int foreground = 0;
+  for (int k = 1; k <= 8; ++k) {
+    const ImageSize size = sizes[static_cast<std::size_t>(k - 1)];
+    MixtureOptions options;
+    options.gaussians = k;
+    options.color = k % 2 == 0 ? ColorSpace::kLuv : ColorSpace::kRgb;
+    options.rate = k % 4 < 2 ? LearningRate::kModified : LearningRate::kOriginal;
+    options.alpha = alphas[static_cast<std::size_t>(k - 1)];
+    PlainMixtureModel plain(size, options);
+    std::vector<MixtureModel> models;
+    for (std::size_t i = 0; i <= targets.size(); ++i) {
+      models.push_back(MixtureModel::Create(size, options).value());
+    }
+    cv::Mat expected, mask, other;
+    int t = 0;
+    for (const cv::Mat& frame : FlickeringFrames(size, 120, static_cast<unsigned>(k))) {
+      const cv::Mat held = t % 3 == 0 ? cv::Mat() : RandomPixels(size, 40, random);
+      const cv::Mat ghosts = RandomPixels(size, t % 10 == 9 ? 20 : 0, random);
+      plain.Apply(frame, expected, held);
+      plain.Absorb(ghosts);
+      for (std::size_t i = 0; i < models.size(); ++i) {  // the last: the best target, 2 threads
+        if (i < targets.size()) {
+          targets.Choose(i);
+        } else {
+          targets.ChooseBest();
+        }
+        const int threads = i < targets.size() ? 1 : 2;
+        ASSERT_TRUE(models[i].Apply(frame, i == 0 ? mask : other, threads, held));
+        ASSERT_TRUE(models[i].Absorb(ghosts));
+        if (i == 0) continue;
+        ASSERT_TRUE(Same(mask, other)) << "K = " << k << ", frame " << t;
+      }
+      different += cv::countNonZero(mask != expected);
+      foreground += cv::countNonZero(expected);
+      ++t;
+    }
+    for (const MixtureModel& model : models) {
+      EXPECT_TRUE(Same(models[0].BackgroundImage(), model.BackgroundImage())) << k;
+    }
+    EXPECT_LE(cv::norm(plain.BackgroundImage(), models[0].BackgroundImage(), cv::NORM_INF), 1) << k;
+  }
+  EXPECT_GT(foreground, 5000);
+  EXPECT_LE(different, 0.005 * foreground);
 }
 
 INSTANTIATE_TEST_SUITE_P(Colors, MixtureOnVideo,

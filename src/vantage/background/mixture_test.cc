@@ -10,46 +10,18 @@
 #include <limits>
 #include <numeric>
 #include <opencv2/core.hpp>
-#include <random>
 
 #include "vantage/background/color.h"
+#include "vantage/background/test_frames.h"
 #include "vantage/base/test_support.h"
 
 namespace vantage {
 namespace {
 
+using testing::Flat;
+using testing::FlickeringFrames;
 using ::testing::HasSubstr;
 using testing::MessageOf;
-
-cv::Mat Flat(ImageSize size, const cv::Scalar& bgr) {
-  return cv::Mat(size.height, size.width, CV_8UC3, bgr);
-}
-
-/// Pixels that mostly show one colour, often a second one, sometimes any, all with noise.
-std::vector<cv::Mat> FlickeringFrames(ImageSize size, int count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_int_distribution<int> level(0, 255);
-  std::uniform_real_distribution<double> chance(0, 1);
-  std::normal_distribution<double> noise(0, 4);
-  const int values = size.width * size.height * 3;
-  std::vector<int> first(static_cast<size_t>(values)), second(static_cast<size_t>(values));
-  for (int& value : first) value = level(random);
-  for (int& value : second) value = level(random);
-  std::vector<cv::Mat> frames;
-  for (int t = 0; t < count; ++t) {
-    cv::Mat frame = Flat(size, {});
-    for (int i = 0; i < values; i += 3) {
-      const double which = chance(random);
-      for (int c = i; c < i + 3; ++c) {
-        const auto at = static_cast<size_t>(c);
-        const int base = which < 0.7 ? first[at] : which < 0.93 ? second[at] : level(random);
-        frame.data[c] = cv::saturate_cast<uchar>(base + noise(random));
-      }
-    }
-    frames.push_back(frame);
-  }
-  return frames;
-}
 
 /// One pixel's mixture step by step as the text has it: sorted anew in each step, N counted out.
 /// Weights are compared as floats: under the modified rate the first ones are often equal but for
@@ -205,6 +177,30 @@ TEST(Mixture, WhatStopsIsAbsorbedWhenAlphaSays) {
   EXPECT_EQ(foreground, expected);
 }
 
+TEST(Mixture, ASlowRateStillLearns) {
+  MixtureOptions options;
+  options.color = ColorSpace::kRgb;
+  options.rate = LearningRate::kOriginal;
+  options.alpha = 0.0005;
+  auto model = MixtureModel::Create({1, 1}, options);
+  ASSERT_TRUE(model);
+  cv::Mat mask;
+  ASSERT_TRUE(model->Apply(Flat({1, 1}, cv::Scalar::all(100)), mask, 1));
+  for (int t = 0; t < 3000; ++t) {
+    ASSERT_TRUE(model->Apply(Flat({1, 1}, cv::Scalar::all(110)), mask, 1));
+  }
+  EXPECT_EQ(model->BackgroundImage().data[0], 108);  // 110 - 10 exp(-1.5)
+  for (int t = 0; t < 30000; ++t) {
+    ASSERT_TRUE(model->Apply(Flat({1, 1}, cv::Scalar::all(110)), mask, 1));
+  }
+  EXPECT_EQ(model->BackgroundImage().data[0], 110);
+  int foreground = 0;
+  for (mask = 255; mask.data[0] == 255 && foreground < 2000; ++foreground) {
+    ASSERT_TRUE(model->Apply(Flat({1, 1}, {200, 180, 90}), mask, 1));
+  }
+  EXPECT_NEAR(foreground, std::log(0.5 * 1.05) / std::log(1 - 0.0005), 3);
+}
+
 TEST(Mixture, ModifiedRateAveragesTheFirstFramesAndOriginalDoesNot) {
   MixtureOptions options;
   options.color = ColorSpace::kRgb;
@@ -279,6 +275,11 @@ TEST(Mixture, RefusesWrongFramesAndStaysAsItWas) {
   }
   EXPECT_EQ(model->frames(), 1);
   EXPECT_THAT(MessageOf(model->Absorb(cv::Mat(6, 7, CV_8UC1))), HasSubstr("8x6 px"));
+  for (const cv::Mat& held : {cv::Mat(6, 7, CV_8UC1), cv::Mat(6, 8, CV_8UC3)}) {
+    EXPECT_THAT(MessageOf(model->Apply(Flat({8, 6}, {1, 2, 3}), mask, 1, held)),
+                HasSubstr("the held pixels are"));
+  }
+  EXPECT_EQ(model->frames(), 1);
 }
 
 TEST(Mixture, TakesViewsOfLargerPicturesAndItsOwnFrameAsMask) {
