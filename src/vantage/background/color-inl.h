@@ -94,6 +94,46 @@ HWY_INLINE Color<V> LuvFromLevels(D d, const Color<V>& bgr) {
   return {l, hn::Mul(l, u), hn::Mul(l, v)};
 }
 
+/// sRGB level in 0..255 of linear light, clipped, within 0.002.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V LevelFromLinear(D d, V linear) {
+  const V x = hn::Min(hn::Max(linear, hn::Zero(d)), hn::Set(d, 1.0F));
+  const V straight = hn::Mul(x, hn::Set(d, 255 * 12.92F));
+  // The power 1 / 2.4 is s^(5/3) of the fourth root s: a polynomial.
+  const V s = hn::Sqrt(hn::Sqrt(x));
+  const V s2 = hn::Mul(s, s);
+  const V power = hn::Add(hn::Add(Line(d, s, -15.6417485F, 41.3166425F),
+                                  hn::Mul(s2, Line(d, s, 320.128295F, -147.258334F))),
+                          hn::Mul(hn::Mul(s2, s2), Line(d, s, 73.8310663F, -17.3775961F)));
+  return hn::IfThenElse(hn::Le(x, hn::Set(d, 0.0031308F)), straight,
+                        hn::Min(power, hn::Set(d, 255.0F)));
+}
+
+/// Levels in 0..255, not rounded; colours outside sRGB are clipped.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Color<V> LevelsFromLuv(D d, const Color<V>& luv) {
+  const V l = luv.c0;
+  // Black (L* = 0) has no chromaticity: Y = 0 makes all 0 whatever stands here.
+  const V inverse = hn::Div(hn::Set(d, 1 / 13.0F), hn::Max(l, hn::Set(d, 1e-9F)));
+  const V u = hn::Add(hn::Mul(luv.c1, inverse), hn::Set(d, 0.19783945F));
+  const V v =
+      hn::Max(hn::Add(hn::Mul(luv.c2, inverse), hn::Set(d, 0.46834203F)), hn::Set(d, 1e-6F));
+  const V root = hn::Mul(hn::Add(l, hn::Set(d, 16.0F)), hn::Set(d, 1 / 116.0F));
+  const V y = hn::IfThenElse(hn::Gt(l, hn::Set(d, 8.0F)), hn::Mul(root, hn::Mul(root, root)),
+                             hn::Mul(l, hn::Set(d, 27.0F / 24389)));
+  const V scale = hn::Div(y, hn::Mul(v, hn::Set(d, 4.0F)));  // Y / (4 v')
+  const V x = hn::Mul(scale, hn::Mul(u, hn::Set(d, 9.0F)));
+  const V z = hn::Mul(scale, hn::Sub(hn::Sub(hn::Set(d, 12.0F), hn::Mul(u, hn::Set(d, 3.0F))),
+                                     hn::Mul(v, hn::Set(d, 20.0F))));
+  const auto level = [&](float of_x, float of_y, float of_z) {
+    const V linear = hn::Add(hn::Add(hn::Mul(x, hn::Set(d, of_x)), hn::Mul(y, hn::Set(d, of_y))),
+                             hn::Mul(z, hn::Set(d, of_z)));
+    return LevelFromLinear(d, linear);
+  };
+  return {level(0.0556434F, -0.2040259F, 1.0572252F), level(-0.9692660F, 1.8760108F, 0.0415560F),
+          level(3.2404542F, -1.5371385F, -0.4985314F)};
+}
+
 }  // namespace vantage::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

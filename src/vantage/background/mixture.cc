@@ -206,16 +206,19 @@ cv::Mat MixtureModel::BackgroundImage(const cv::Rect& region) const {
   constexpr int kPixels = GaussianBlock::kPixels;
   const cv::Rect inside = region & cv::Rect(0, 0, size_.width, size_.height);
   cv::Mat image(inside.height, inside.width, CV_8UC3);
-  const auto convert = options_.color == ColorSpace::kLuv ? BgrFromLuv : BgrFromFloat;
+  const int right = inside.x + inside.width;
   for (int y = 0; y < inside.height; ++y) {
     const std::size_t start =
         static_cast<std::size_t>(inside.y + y) * static_cast<std::size_t>(row_blocks());
-    for (int x = 0; x < inside.width; ++x) {
-      const int column = inside.x + x;
-      const float* mean =
-          fittest_[start + static_cast<std::size_t>(column / kPixels)].mean(column % kPixels);
-      const float color[3] = {mean[0], mean[kPixels], mean[2 * kPixels]};
-      convert(color, image.ptr(y, x), 1);
+    std::uint8_t* out = image.ptr(y);
+    for (int x = inside.x; x < right;) {
+      const int block = x / kPixels;
+      const int end = std::min((block + 1) * kPixels, right);
+      std::uint8_t bgr[3 * kPixels];
+      MeansAsBgr(fittest_[start + static_cast<std::size_t>(block)],
+                 options_.color == ColorSpace::kLuv, bgr);
+      out = std::copy_n(bgr + 3 * (x % kPixels), 3 * (end - x), out);
+      x = end;
     }
   }
   return image;
@@ -229,6 +232,7 @@ Status MixtureModel::Absorb(const cv::Mat& pixels) {
   const auto beta = static_cast<float>(options_.absorb_weight);
   const auto added = static_cast<float>(options_.absorb_weight / scale_);
   for (int y = 0; y < size_.height; ++y) {
+    if (cv::countNonZero(pixels.row(y)) == 0) continue;  // most rows, and much faster so
     const std::uint8_t* chosen = pixels.ptr(y);
     for (int x = 0; x < size_.width; ++x) {
       if (chosen[x] == 0) continue;

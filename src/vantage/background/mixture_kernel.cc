@@ -296,6 +296,24 @@ void StepRowOnTarget(const MixtureStep& step, const MixtureRow& row) {
   (step.luv ? StepRowIn<true> : StepRowIn<false>)(step, row);
 }
 
+void MeansAsBgrOnTarget(const GaussianBlock& block, bool luv, std::uint8_t* bgr) {
+  const DF d;
+  const V half = hn::Set(d, 0.5F);
+  std::uint8_t levels[3][kPixels];
+  for (std::size_t i = 0; i < kPixels; i += hn::Lanes(d)) {
+    const float* mean = block.values + i;
+    Color<V> color = {hn::Load(d, mean), hn::Load(d, mean + kPixels),
+                      hn::Load(d, mean + 2 * kPixels)};
+    if (luv) color = LevelsFromLuv(d, color);
+    StoreBytes(hn::Add(color.c0, half), levels[0] + i);
+    StoreBytes(hn::Add(color.c1, half), levels[1] + i);
+    StoreBytes(hn::Add(color.c2, half), levels[2] + i);
+  }
+  for (int i = 0; i < kPixels; ++i, bgr += 3) {
+    for (int c = 0; c < 3; ++c) bgr[c] = levels[c][i];
+  }
+}
+
 const char* NameOfTarget() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace
@@ -306,10 +324,15 @@ HWY_AFTER_NAMESPACE();
 namespace vantage {
 
 HWY_EXPORT(StepRowOnTarget);
+HWY_EXPORT(MeansAsBgrOnTarget);
 HWY_EXPORT(NameOfTarget);
 
 void StepRow(const MixtureStep& step, const MixtureRow& row) {
   HWY_DYNAMIC_DISPATCH(StepRowOnTarget)(step, row);
+}
+
+void MeansAsBgr(const GaussianBlock& block, bool luv, std::uint8_t* bgr) {
+  HWY_DYNAMIC_DISPATCH(MeansAsBgrOnTarget)(block, luv, bgr);
 }
 
 const char* MixtureInstructionSet() { return HWY_DYNAMIC_DISPATCH(NameOfTarget)(); }

@@ -57,6 +57,10 @@ struct MixtureRow {
 /// instruction set: every target of Highway gives the same bits.
 void StepRow(const MixtureStep& step, const MixtureRow& row);
 
+/// Means of a block's Gaussians as 8-bit blue green red, 3 bytes a pixel; the same bits on every
+/// target.
+void MeansAsBgr(const GaussianBlock& block, bool luv, std::uint8_t* bgr);
+
 /// Highway's name of the instruction set that StepRow takes here, e.g. "AVX3" for AVX-512.
 const char* MixtureInstructionSet();
 

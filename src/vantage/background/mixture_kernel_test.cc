@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "vantage/background/color.h"
 #include "vantage/background/mixture.h"
 #include "vantage/background/mixture_oracle.h"
 #include "vantage/background/test_frames.h"
@@ -44,6 +45,35 @@ TEST(MixtureKernel, EveryTargetCanBeChosen) {
   }
   EXPECT_EQ(names.size(), targets.size());
   EXPECT_GE(names.size(), 2U);
+}
+
+TEST(MixtureKernel, MeansBecomeTheLevelsTheyCameFromOnEveryTarget) {
+  constexpr int kPixels = GaussianBlock::kPixels;
+  HighwayTargets targets;
+  for (int b = 0; b < 256; b += 3) {
+    for (int g = 0; g < 256; g += 5) {
+      for (int r = 0; r < 256; r += kPixels) {
+        std::vector<std::uint8_t> bgr;
+        for (int i = 0; i < kPixels; ++i) {
+          for (const int level : {b, g, r + i}) bgr.push_back(static_cast<std::uint8_t>(level));
+        }
+        for (const bool luv : {true, false}) {
+          std::vector<float> colors(3 * kPixels);
+          (luv ? LuvFromBgr : FloatFromBgr)(bgr.data(), colors.data(), kPixels);
+          GaussianBlock block = {};
+          for (int i = 0; i < kPixels; ++i) {
+            for (int c = 0; c < 3; ++c) {
+              block.mean(i)[c * kPixels] = colors[static_cast<std::size_t>(3 * i + c)];
+            }
+          }
+          std::vector<std::uint8_t> back(3 * kPixels);
+          targets.Choose(static_cast<std::size_t>(b + g + r) % targets.size());
+          MeansAsBgr(block, luv, back.data());
+          ASSERT_EQ(bgr, back);
+        }
+      }
+    }
+  }
 }
 
 /// One instruction set's model of a part of the frames, placed so that its blocks of 16 pixels are
