@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kMaxSide_px = 16384;
 // Rows per task: fixed, so that the work is cut the same way for every thread count.
-constexpr int kBlockRows = 8;
+constexpr int kBlockRows = 16;
 // Less is forgotten when the decay is written into the weights.
 constexpr float kForgottenWeight = 1e-12F;
 // That happens before s falls below this: every 2,760 frames at alpha = 0.005.
