@@ -195,7 +195,7 @@ bool DisturbanceDetector::IsFrozen(const cv::Mat& bgr, const cv::Mat& samples) {
     ++repeats_;  // something small that moves may have slipped between the samples: none has
   } else {
     repeats_ = 1;
-    bgr.copyTo(repeated_);
+    repeated_ = bgr.clone();
   }
   if (repeats_ > 0 && repeats_ >= FramesOf(options_.freeze_secs)) return true;
   if (usual_change_ == 0) usual_change_ = change;

@@ -19,7 +19,7 @@ constexpr int kBrightest = 250;
 // Fewer samples that differ from the background than this share, by this share of its level, are
 // no change of the light.
 constexpr double kLeastDiffering = 0.25;
-constexpr double kDiffer = 0.03;
+constexpr double kDiffer = 0.05;
 constexpr int kNear_levels = 20;        // "near" a prediction, in each channel
 constexpr double kChanged = 0.08;       // of a block's level
 constexpr double kLocal = 0.15;         // what a block may differ from the smooth surface
@@ -200,17 +200,33 @@ bool MayHaveChanged(const Samples& samples) {
   for (int y = 0; y < samples.frame.rows; ++y) {
     for (int x = 0; x < samples.frame.cols; ++x) {
       if (samples.Ignored(x, y)) continue;
-      int seen = 0;
-      int behind = 0;
+      bool differs = false;
       for (int c = 0; c < 3; ++c) {
-        seen += samples.Seen(x, y, c);
-        behind += samples.Behind(x, y, c);
+        const int behind = samples.Behind(x, y, c);
+        differs = differs || std::abs(samples.Seen(x, y, c) - behind) > kDiffer * behind;
       }
       ++used;
-      if (std::abs(seen - behind) > kDiffer * behind) ++differ;
+      differ += differs ? 1 : 0;
     }
   }
   return differ > kLeastDiffering * used;
+}
+
+/// Median correlation of frame and background over the textured blocks.
+double StructureOf(const Samples& samples) {
+  const cv::Mat frame = Texture(samples.frame);
+  const cv::Mat background = Texture(samples.background);
+  std::vector<double> correlations;
+  ForEachBlock(frame.size(), [&](int, int, const cv::Rect& block) {
+    cv::Scalar seen, seen_sigma, behind, behind_sigma;
+    cv::meanStdDev(frame(block), seen, seen_sigma);
+    cv::meanStdDev(background(block), behind, behind_sigma);
+    if (behind_sigma[0] < kTextured_levels) return;
+    const double covariance =
+        frame(block).dot(background(block)) / block.area() - seen[0] * behind[0];
+    correlations.push_back(covariance / (std::max(seen_sigma[0], 1.0) * behind_sigma[0]));
+  });
+  return correlations.empty() ? 1 : Median(correlations);
 }
 
 /// Fills the figures that tell whether the light explains the frame.
@@ -220,63 +236,55 @@ void Judge(const Samples& samples, LightChange& change) {
   int lit = 0;
   int blocks = 0;
   int changed = 0;
-  std::vector<double> correlations;
   std::vector<double> factors;
-  const cv::Mat frame_texture = Texture(samples.frame);
-  const cv::Mat background_texture = Texture(samples.background);
   ForEachBlock(samples.frame.size(), [&](int column, int row, const cv::Rect& block) {
     const cv::Vec3f field = change.field.at<cv::Vec3f>(row, column);
-    double n = 0, seen = 0, behind = 0, seen_2 = 0, behind_2 = 0, product = 0, lit_sum = 0,
-           level_sum = 0;
+    int block_used = 0;
+    cv::Vec3d before(1, 1, 1);  // sums of levels; 1 keeps quotient and logarithm defined
+    cv::Vec3d after(1, 1, 1);
     for (int y = block.y; y < block.br().y; ++y) {
       for (int x = block.x; x < block.br().x; ++x) {
         if (samples.Ignored(x, y)) continue;
-        bool before = true;
-        bool after = true;
-        const double texture_seen = frame_texture.at<std::uint8_t>(y, x);
-        const double texture_behind = background_texture.at<std::uint8_t>(y, x);
+        bool near_before = true;
+        bool near_after = true;
         for (int c = 0; c < 3; ++c) {
-          const double i = samples.Seen(x, y, c);
-          const double b = samples.Behind(x, y, c);
-          const auto k = static_cast<std::size_t>(c);
-          const double predicted =
-              std::clamp(field[c] * (change.gain[k] * b + change.offset[k]), 0.0, 255.0);
-          before = before && std::abs(i - b) <= kNear_levels;
-          after = after && std::abs(i - predicted) <= kNear_levels;
-          lit_sum += predicted / 3;
-          level_sum += b / 3;
+          const double seen = samples.Seen(x, y, c);
+          const double behind = samples.Behind(x, y, c);
+          const double predicted = change.Predict(field[c], c, behind);
+          near_before = near_before && std::abs(seen - behind) <= kNear_levels;
+          near_after = near_after && std::abs(seen - predicted) <= kNear_levels;
+          before[c] += behind;
+          after[c] += predicted;
         }
-        ++used;
-        explained += after ? 1 : 0;
-        lit += after && !before && samples.foreground.at<std::uint8_t>(y, x) != 0 ? 1 : 0;
-        n += 1;
-        seen += texture_seen;
-        behind += texture_behind;
-        seen_2 += texture_seen * texture_seen;
-        behind_2 += texture_behind * texture_behind;
-        product += texture_seen * texture_behind;
+        ++block_used;
+        if (near_after) ++explained;
+        if (near_after && !near_before && samples.foreground.at<std::uint8_t>(y, x) != 0) ++lit;
       }
     }
-    if (4 * n < block.area()) return;
+    used += block_used;
+    if (4 * block_used < block.area()) return;
     ++blocks;
-    const double factor = lit_sum / std::max(level_sum, n);
-    factors.push_back(factor);
-    if (std::abs(std::log(std::max(factor, 1e-3))) > kChanged) ++changed;
-    const double variance_seen = seen_2 / n - seen * seen / n / n;
-    const double variance_behind = behind_2 / n - behind * behind / n / n;
-    if (variance_behind < kTextured_levels * kTextured_levels) return;
-    const double covariance = product / n - seen * behind / n / n;
-    correlations.push_back(covariance / std::sqrt(std::max(variance_seen, 1.0) * variance_behind));
+    factors.push_back((after[0] + after[1] + after[2]) / (before[0] + before[1] + before[2]));
+    bool block_changed = false;
+    for (int c = 0; c < 3; ++c) {
+      block_changed = block_changed || std::abs(std::log(after[c] / before[c])) > kChanged;
+    }
+    if (block_changed) ++changed;
   });
   if (blocks == 0) return;
   change.explained = static_cast<double>(explained) / used;
   change.lit = static_cast<double>(lit) / used;
   change.changed = static_cast<double>(changed) / blocks;
   change.factor = Median(factors);
-  change.structure = correlations.empty() ? 1 : Median(correlations);
+  change.structure = StructureOf(samples);
 }
 
 }  // namespace
+
+double LightChange::Predict(double light, int channel, double level) const {
+  const auto c = static_cast<std::size_t>(channel);
+  return std::clamp(light * (gain[c] * level + offset[c]), 0.0, 255.0);
+}
 
 cv::Mat SamplePixels(const cv::Mat& picture, int step_px) {
   const int first = step_px / 2;
@@ -339,11 +347,9 @@ cv::Mat GainPicture(const LightChange& change, const cv::Mat& background) {
     const auto* behind = background.ptr<cv::Vec3b>(y);
     for (int x = 0; x < gain.cols; ++x) {
       for (int c = 0; c < 3; ++c) {
-        const auto k = static_cast<std::size_t>(c);
         const double level = std::max<double>(behind[x][c], 1);
-        const double lit = to[x][c] * (change.gain[k] * level + change.offset[k]);
-        to[x][c] =
-            static_cast<float>(std::clamp(std::clamp(lit, 0.0, 255.0) / level, 1.0 / 32, 32.0));
+        const double factor = change.Predict(to[x][c], c, level) / level;
+        to[x][c] = static_cast<float>(std::clamp(factor, 1.0 / 32, 32.0));
       }
     }
   }

@@ -24,10 +24,13 @@ struct LightChange {
   /// Share of the samples that are foreground, near s (a B + b) and not near B: the foreground that
   /// is nothing but light.
   double lit = 0;
-  double changed = 0;  ///< share of blocks whose level changed by the light
+  double changed = 0;  ///< share of blocks where the light changed the level of a channel
   /// Median over textured blocks of the correlation of frame and background inside a block: near 1
   /// when the same things are seen in another light. 1 where nothing is textured.
   double structure = 0;
+
+  /// The level of `channel` where the background has `level` and s is `light`, clipped to 0..255.
+  double Predict(double light, int channel, double level) const;
 };
 
 /// The light's change between the samples of a background and of a frame, both CV_8UC3 of one size.
