@@ -271,6 +271,7 @@ Status MixtureModel::Relight(const cv::Mat& gain, int threads) {
   ForEachRow(threads, size_.height, [&](int y) {
     const float* factors = gain.ptr<float>(y);
     for (int x = 0; x < size_.width; ++x, factors += 3) {
+      const float brighter = std::max(1.0F, (factors[0] + factors[1] + factors[2]) / 3);
       const std::size_t block =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(row_blocks()) +
           static_cast<std::size_t>(x / kPixels);
@@ -285,6 +286,8 @@ Status MixtureModel::Relight(const cv::Mat& gain, int threads) {
         }
         if (luv) color = LuvFromLevels(color);
         for (std::size_t c = 0; c < 3; ++c) mean[c * kPixels] = color[c];
+        // More light multiplies the noise too. The same factor for all: their order stays.
+        g.variance(x % kPixels) *= brighter * brighter;
       }
     }
   });

@@ -39,7 +39,7 @@ struct MixtureOptions {
   int gaussians = 3;
   /// Learning rate per frame, 0 < alpha <= 1. What stands still is background after about
   /// log(background_share) / log(1 - alpha) frames.
-  double alpha = 0.005;
+  double alpha = 0.002;
   /// T, the least prior probability of background, 0 < background_share < 1. At 0.5 people who
   /// stand for a while stay foreground twice as long as at the 0.7 of others; ghosts of what did
   /// fade are left to ghost detection.
@@ -91,7 +91,8 @@ class MixtureModel {
   Status Absorb(const cv::Mat& pixels);
 
   /// After a sudden change of light: multiplies the mean of every Gaussian by the factors `gain`
-  /// (CV_32FC3 of the model's size; blue, green, red; of 8-bit levels, which stay within [0, 255]).
+  /// (CV_32FC3 of the model's size; blue, green, red; of 8-bit levels, which stay within [0, 255]),
+  /// and its standard deviation by their mean where that is above 1.
   /// Fails on another size or type and on factors that are negative or not finite; the model is
   /// then as before.
   Status Relight(const cv::Mat& gain, int threads);
