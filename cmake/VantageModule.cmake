@@ -32,7 +32,7 @@ add_library(vantage_opencv INTERFACE)
 target_include_directories(vantage_opencv SYSTEM INTERFACE
                            "$<BUILD_INTERFACE:${OpenCV_INCLUDE_DIRS}>")
 target_link_libraries(vantage_opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs
-                                               opencv_videoio opencv_calib3d)
+                                               opencv_videoio opencv_calib3d opencv_video)
 add_library(vantage_dependencies INTERFACE)
 target_link_libraries(vantage_dependencies INTERFACE vantage_opencv Eigen3::Eigen TBB::tbb fmt::fmt
                                                      tl::expected nlohmann_json::nlohmann_json)

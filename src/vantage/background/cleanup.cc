@@ -3,6 +3,9 @@
 #include "vantage/background/cleanup.h"
 
 #include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "vantage/background/components.h"
 
 namespace vantage {
 namespace {
@@ -12,15 +15,9 @@ cv::Mat Disc(int radius_px) {
 }
 
 void DropSmallComponents(cv::Mat& mask, int min_area_px) {
-  cv::Mat labels, stats, centroids;
-  cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
-  for (int y = 0; y < mask.rows; ++y) {
-    auto* pixel = mask.ptr(y);
-    const auto* label = labels.ptr<int>(y);
-    for (int x = 0; x < mask.cols; ++x) {
-      if (label[x] != 0 && stats.at<int>(label[x], cv::CC_STAT_AREA) < min_area_px) pixel[x] = 0;
-    }
-  }
+  const std::vector<Component> large = FindComponents(mask, {.min_area_px = min_area_px});
+  mask.setTo(0);
+  for (const Component& component : large) mask(component.window).setTo(255, component.pixels);
 }
 
 }  // namespace

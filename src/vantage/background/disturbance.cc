@@ -57,11 +57,13 @@ Status CheckPicture(const cv::Mat& picture, cv::Size size) {
       picture.cols, picture.rows, cv::typeToString(picture.type()), size.width, size.height);
 }
 
-/// SamplePixels of the background; asks only for the rows that hold samples.
+/// SamplePixels of the background; asks only for the rows that hold samples. Empty where the method
+/// has no picture of it.
 Result<cv::Mat> SampleBackground(const BackgroundPicture& background, cv::Size size, int step_px) {
   std::vector<cv::Mat> rows;
   for (int y = step_px / 2; y < size.height; y += step_px) {
     const cv::Mat row = background({0, y, size.width, 1});
+    if (row.empty()) return cv::Mat();
     VANTAGE_RETURN_IF_ERROR(CheckPicture(row, {size.width, 1}));
     cv::Mat samples(1, (size.width - step_px / 2 + step_px - 1) / step_px, CV_8UC3);
     for (int x = 0; x < samples.cols; ++x) {
@@ -257,6 +259,7 @@ Result<cv::Mat> DisturbanceDetector::GainOfLight(const cv::Mat& mask,
   if (!settling && frame_ < next_light_check_) return cv::Mat();
   const cv::Size size(size_.width, size_.height);
   VANTAGE_ASSIGN_OR_RETURN(const cv::Mat behind, SampleBackground(background, size, step_px_));
+  if (behind.empty()) return cv::Mat();
   const LightChange change =
       EstimateLightChange(samples_, behind, SamplePixels(mask, step_px_), foreground_);
   const bool same_things = change.explained >= kExplained && change.structure >= kStructure;
@@ -284,6 +287,7 @@ Result<bool> DisturbanceDetector::IsMoved(const cv::Mat& bgr, const BackgroundPi
   if (options_.moved_px <= 0 || frame_ < next_shift_check_) return false;
   next_shift_check_ = frame_ + kShiftChecksApart;
   const cv::Mat picture = background({0, 0, size_.width, size_.height});
+  if (picture.empty()) return false;
   VANTAGE_RETURN_IF_ERROR(CheckPicture(picture, bgr.size()));
   const std::optional<CameraShift> shift = EstimateCameraShift(bgr, picture, options_.moved_px);
   if (!shift) {

@@ -10,7 +10,13 @@
 namespace vantage {
 
 void VisitOptions(BackgroundOptions& options, OptionVisitor& visitor) {
+  visitor.Choice(
+      {"method", "", "background algorithm; mog2 and knn are OpenCV's, at their defaults"},
+      options.method,
+      {{"mixture", MethodKind::kMixture}, {"mog2", MethodKind::kMog2}, {"knn", MethodKind::kKnn}});
   VisitOptions(options.mixture, visitor);
+  VisitOptions(options.disturbances, visitor);
+  VisitOptions(options.shadows, visitor);
   VisitOptions(options.ghosts, visitor);
   VisitOptions(options.cleanup, visitor);
 }
@@ -20,40 +26,140 @@ Status Validate(const BackgroundOptions& options) {
   return Validate(options.mixture);
 }
 
+BackgroundSubtractor::BackgroundSubtractor(ImageSize size, std::unique_ptr<BackgroundMethod> method,
+                                           DisturbanceDetector disturbances, GhostDetector ghosts,
+                                           const BackgroundOptions& options)
+    : size_(size),
+      method_(std::move(method)),
+      disturbances_(std::move(disturbances)),
+      ghosts_(std::move(ghosts)),
+      options_(options) {}
+
 Result<BackgroundSubtractor> BackgroundSubtractor::Create(ImageSize size,
-                                                          const BackgroundOptions& options) {
+                                                          const BackgroundOptions& options,
+                                                          double frames_per_second) {
   VANTAGE_RETURN_IF_ERROR(Validate(options));
-  VANTAGE_ASSIGN_OR_RETURN(MixtureModel model, MixtureModel::Create(size, options.mixture));
-  return BackgroundSubtractor(std::move(model), options);
+  VANTAGE_ASSIGN_OR_RETURN(std::unique_ptr<BackgroundMethod> method,
+                           CreateMethod(options.method, size, options.mixture));
+  return Create(size, std::move(method), options, frames_per_second);
 }
 
-Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int threads) {
+Result<BackgroundSubtractor> BackgroundSubtractor::Create(ImageSize size,
+                                                          std::unique_ptr<BackgroundMethod> method,
+                                                          const BackgroundOptions& options,
+                                                          double frames_per_second) {
+  VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "background"));
+  if (method == nullptr) return Fail("background: no method given; it must be an object");
+  VANTAGE_ASSIGN_OR_RETURN(
+      DisturbanceDetector disturbances,
+      DisturbanceDetector::Create(size, options.disturbances, frames_per_second));
+  VANTAGE_ASSIGN_OR_RETURN(GhostDetector ghosts, GhostDetector::Create(size, options.ghosts));
+  return BackgroundSubtractor(size, std::move(method), std::move(disturbances), std::move(ghosts),
+                              options);
+}
+
+Status BackgroundSubtractor::CheckFrame(const cv::Mat& bgr, const cv::Mat& held) const {
+  const cv::Size size(size_.width, size_.height);
+  if (bgr.empty()) return Fail("background: frame {} is empty", report_.frames);
+  if (bgr.type() != CV_8UC3 || bgr.size() != size) {
+    return Fail(
+        "background: frame {} is {}x{} px of type {}; it must be {}x{} px of 8-bit BGR (CV_8UC3)",
+        report_.frames, bgr.cols, bgr.rows, cv::typeToString(bgr.type()), size.width, size.height);
+  }
+  if (!held.empty() && (held.type() != CV_8UC1 || held.size() != size)) {
+    return Fail(
+        "background: the held pixels of frame {} are {}x{} px of type {}; they must be {}x{} px "
+        "of type CV_8UC1",
+        report_.frames, held.cols, held.rows, cv::typeToString(held.type()), size.width,
+        size.height);
+  }
+  return {};
+}
+
+/// A caller's own method may be wrong.
+Status BackgroundSubtractor::CheckMask(const cv::Mat& mask) const {
+  if (mask.type() == CV_8UC1 && mask.cols == size_.width && mask.rows == size_.height) return {};
+  return Fail(
+      "background: the method's mask is {}x{} px of type {}; it must be {}x{} px of type CV_8UC1",
+      mask.cols, mask.rows, cv::typeToString(mask.type()), size_.width, size_.height);
+}
+
+/// The method's mask, made again when a disturbance had to be corrected.
+Status BackgroundSubtractor::Learn(const cv::Mat& frame, cv::Mat& mask, int threads,
+                                   const cv::Mat& held) {
   Stopwatch watch;
+  const auto background = [this](const cv::Rect& r) { return method_->BackgroundImage(r); };
+  VANTAGE_RETURN_IF_ERROR(method_->Apply(frame, held, mask, threads));
+  VANTAGE_RETURN_IF_ERROR(CheckMask(mask));
+  watch.LapInto(report_.method_secs);
+  VANTAGE_ASSIGN_OR_RETURN(const Disturbance found, disturbances_.Inspect(frame, mask, background));
+  if (found.action != DisturbanceAction::kNone) {
+    reliable_ = false;
+    bool relit = false;
+    if (found.action == DisturbanceAction::kRelight) {
+      VANTAGE_ASSIGN_OR_RETURN(relit, method_->Relight(found.gain, threads));
+    }
+    if (!relit) method_->Restart();
+    VANTAGE_RETURN_IF_ERROR(method_->Apply(frame, held, mask, threads));
+    VANTAGE_RETURN_IF_ERROR(CheckMask(mask));
+  }
+  watch.LapInto(report_.disturbance_secs);
+  return {};
+}
+
+Status BackgroundSubtractor::TakeGhosts(const cv::Mat& frame, cv::Mat& mask, const cv::Mat& held) {
+  const auto background = [this](const cv::Rect& r) { return method_->BackgroundImage(r); };
+  VANTAGE_ASSIGN_OR_RETURN(verdict_, ghosts_.Judge(frame, mask, background));
+  if (verdict_.ghosts.empty()) return {};
+  if (!held.empty()) {
+    verdict_.ghosts.setTo(0, held);
+    verdict_.ghosts_px = cv::countNonZero(verdict_.ghosts);
+    if (verdict_.ghosts_px == 0) {
+      verdict_.ghosts.release();
+      return {};
+    }
+  }
+  VANTAGE_RETURN_IF_ERROR(method_->Absorb(verdict_.ghosts));
+  mask.setTo(0, verdict_.ghosts);
+  ++report_.ghost_frames;
+  report_.ghosts_px += verdict_.ghosts_px;
+  return {};
+}
+
+Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int threads,
+                                   const cv::Mat& held) {
+  VANTAGE_RETURN_IF_ERROR(CheckFrame(bgr, held));
   // `mask` may be the same object.
   const cv::Mat frame = bgr;  // NOLINT(performance-unnecessary-copy-initialization)
-  VANTAGE_RETURN_IF_ERROR(model_.Apply(frame, mask, threads));
-  watch.LapInto(report_.mixture_secs);
-
-  const auto background = [this](const cv::Rect& region) { return model_.BackgroundImage(region); };
-  VANTAGE_ASSIGN_OR_RETURN(const std::vector<JudgedComponent> judged,
-                           JudgeComponents(frame, mask, background, options_.ghosts));
-  bool any_ghost = false;
-  for (const JudgedComponent& one : judged) {
-    if (!one.ghost) continue;
-    any_ghost = true;
-    ++report_.ghosts;
-    report_.ghosts_px += one.component.area_px;
+  Stopwatch watch;
+  VANTAGE_ASSIGN_OR_RETURN(const Disturbance seen, disturbances_.Look(frame));
+  watch.LapInto(report_.disturbance_secs);
+  reliable_ = seen.action == DisturbanceAction::kNone;
+  verdict_ = {};
+  if (reliable_) {
+    VANTAGE_RETURN_IF_ERROR(Learn(frame, mask, threads, held));
+    watch = {};
+    const auto background = [this](const cv::Rect& r) { return method_->BackgroundImage(r); };
+    VANTAGE_ASSIGN_OR_RETURN(const int shadows_px,
+                             RejectShadows(frame, mask, background, options_.shadows));
+    report_.shadows_px += shadows_px;
+    watch.LapInto(report_.shadow_secs);
+    mask.copyTo(judged_mask_);
+    VANTAGE_RETURN_IF_ERROR(TakeGhosts(frame, mask, held));
+    watch.LapInto(report_.ghost_secs);
+    VANTAGE_RETURN_IF_ERROR(CleanMask(mask, options_.cleanup));
+    watch.LapInto(report_.cleanup_secs);
+    mask.copyTo(last_mask_);
+  } else if (seen.kind == DisturbanceKind::kFreeze && !last_mask_.empty()) {
+    last_mask_.copyTo(mask);
+    mask.copyTo(judged_mask_);
+  } else {
+    mask = cv::Mat::zeros(frame.size(), CV_8UC1);
+    mask.copyTo(judged_mask_);
   }
-  if (any_ghost) {
-    const cv::Mat ghosts = GhostMask(judged, mask.size());
-    VANTAGE_RETURN_IF_ERROR(model_.Absorb(ghosts));
-    mask.setTo(0, ghosts);
-  }
-  watch.LapInto(report_.ghost_secs);
-
-  VANTAGE_RETURN_IF_ERROR(CleanMask(mask, options_.cleanup));
-  watch.LapInto(report_.cleanup_secs);
   ++report_.frames;
+  if (!reliable_) ++report_.unreliable;
+  report_.disturbances = disturbances_.report();
   return {};
 }
 

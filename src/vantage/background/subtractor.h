@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 
 #include "vantage/background/cleanup.h"
+#include "vantage/background/disturbance.h"
 #include "vantage/background/ghosts.h"
-#include "vantage/background/mixture.h"
+#include "vantage/background/method.h"
+#include "vantage/background/report.h"
+#include "vantage/background/shadows.h"
 #include "vantage/base/options.h"
 #include "vantage/base/result.h"
 
@@ -15,7 +19,10 @@ namespace vantage {
 
 /// Options of the background stage; one flat table, e.g. `[background]` of a scene.
 struct BackgroundOptions {
+  MethodKind method = MethodKind::kMixture;
   MixtureOptions mixture;
+  DisturbanceOptions disturbances;
+  ShadowOptions shadows;
   GhostOptions ghosts;
   CleanupOptions cleanup;
 };
@@ -23,37 +30,57 @@ void VisitOptions(BackgroundOptions& options, OptionVisitor& visitor);
 /// Fields one by one, then the rules that join two of them.
 Status Validate(const BackgroundOptions& options);
 
-/// What the stage did so far.
-struct BackgroundReport {
-  std::int64_t frames = 0;
-  std::int64_t ghosts = 0;     ///< components absorbed, counted in each frame
-  std::int64_t ghosts_px = 0;  ///< their pixels
-  double mixture_secs = 0;
-  double ghost_secs = 0;
-  double cleanup_secs = 0;
-};
-
-/// Frames of one fixed camera in, masks out: the mixture model, then ghosts, which are absorbed
-/// into the model and taken out of the mask, then the clean-up. One object per camera; not
-/// thread-safe.
+/// Frames of one fixed camera in, masks out. In this order: frames that are frozen or black are
+/// kept from the method; the method's mask; a sudden change of light or a moved camera corrected in
+/// the method and the mask made again; shadows; ghosts, which are absorbed by the method and taken
+/// out of the mask; the clean-up. One object per camera; not thread-safe.
 class BackgroundSubtractor {
  public:
-  static Result<BackgroundSubtractor> Create(ImageSize size, const BackgroundOptions& options);
+  /// `frames_per_second` > 0 turns the options' seconds into frames.
+  static Result<BackgroundSubtractor> Create(ImageSize size, const BackgroundOptions& options,
+                                             double frames_per_second = 25);
+
+  /// The same around a method of the caller's own; `options.method` and `options.mixture` are not
+  /// used.
+  static Result<BackgroundSubtractor> Create(ImageSize size,
+                                             std::unique_ptr<BackgroundMethod> method,
+                                             const BackgroundOptions& options,
+                                             double frames_per_second = 25);
 
   /// `bgr` is CV_8UC3 of the given size, `mask` becomes CV_8UC1 of that size, 0 background and 255
-  /// foreground. Same bits for every thread count. Fails on a frame of another size or type.
-  Status Apply(const cv::Mat& bgr, cv::Mat& mask, int threads);
+  /// foreground. `held`, empty or CV_8UC1 of that size, is not 0 where an object is known to stand:
+  /// it neither fades into the background there nor is it taken for a ghost. Same bits for every
+  /// thread count. Fails on matrices of another size or type.
+  Status Apply(const cv::Mat& bgr, cv::Mat& mask, int threads, const cv::Mat& held = {});
 
-  const MixtureModel& model() const { return model_; }
+  const BackgroundMethod& method() const { return *method_; }
   const BackgroundReport& report() const { return report_; }
+  /// What was found about the last frame's components, before the clean-up.
+  const GhostVerdict& verdict() const { return verdict_; }
+  /// The last frame's mask as it was judged: before ghosts were taken out and the clean-up.
+  const cv::Mat& foreground() const { return judged_mask_; }
+  /// False when a disturbance made the last mask unreliable.
+  bool reliable() const { return reliable_; }
 
  private:
-  BackgroundSubtractor(MixtureModel model, const BackgroundOptions& options)
-      : model_(std::move(model)), options_(options) {}
+  BackgroundSubtractor(ImageSize size, std::unique_ptr<BackgroundMethod> method,
+                       DisturbanceDetector disturbances, GhostDetector ghosts,
+                       const BackgroundOptions& options);
+  Status CheckFrame(const cv::Mat& bgr, const cv::Mat& held) const;
+  Status CheckMask(const cv::Mat& mask) const;
+  Status Learn(const cv::Mat& frame, cv::Mat& mask, int threads, const cv::Mat& held);
+  Status TakeGhosts(const cv::Mat& frame, cv::Mat& mask, const cv::Mat& held);
 
-  MixtureModel model_;
+  ImageSize size_;
+  std::unique_ptr<BackgroundMethod> method_;
+  DisturbanceDetector disturbances_;
+  GhostDetector ghosts_;
   BackgroundOptions options_;
   BackgroundReport report_;
+  GhostVerdict verdict_;
+  cv::Mat judged_mask_;
+  cv::Mat last_mask_;  ///< of the last frame that was learnt; what a frozen camera shows
+  bool reliable_ = true;
 };
 
 }  // namespace vantage

@@ -33,7 +33,7 @@ class Camera {
     const auto background = [this](const cv::Rect& r) { return model_.BackgroundImage(r); };
     const auto found = detector_.Inspect(frame, mask, background);
     EXPECT_TRUE(found) << MessageOf(found);
-    if (found->action == DisturbanceAction::kRelight) Expect(model_.Relight(found->gain));
+    if (found->action == DisturbanceAction::kRelight) Expect(model_.Relight(found->gain, 1));
     if (found->action == DisturbanceAction::kRestart) model_.Restart();
     if (found->action != DisturbanceAction::kNone) Expect(model_.Apply(frame, mask, 1));
     last_ = mask.clone();
