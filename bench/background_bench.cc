@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <cstring>
 #include <opencv2/bgsegm.hpp>
 #include <opencv2/core.hpp>
@@ -12,52 +11,20 @@
 #include <vector>
 
 #include "bench/report.h"
+#include "bench/vtest_frames.h"
 #include "vantage/background/mixture.h"
 #include "vantage/background/mixture_kernel.h"
 #include "vantage/base/parallel.h"
-#include "vantage/video/open.h"
 
 // Cases have two arguments: the width of the frames, which stands for the input, and the threads.
 
 namespace vantage::bench {
 namespace {
 
-/// From Debian's package opencv-doc: PETS 2009 S2.L1 View_001.
-constexpr const char* kVideo = "/usr/share/doc/opencv-doc/examples/data/vtest.avi";
-constexpr ImageSize kVideoSize = {768, 576};
-/// The same frames, mirrored at the right and the lower edge until they are as large: that keeps
-/// the noise of the camera, which resizing would smooth.
-constexpr ImageSize kLargeSize = {960, 768};
-/// Enough that a frame is long out of the caches when its turn comes again.
-constexpr std::size_t kFrames = 100;
 /// What a step reads and writes of a pixel at least: the fittest Gaussian (20 bytes) both ways, the
 /// frame's 3 bytes, the slot and the mask. The other Gaussians are visited for 4 % of the vectors
 /// of vtest.avi, another 3 bytes a pixel.
 constexpr double kBytesPerPixel = 2 * 20 + 3 + 1 + 1;
-
-std::vector<cv::Mat> ReadVideo() {
-  std::vector<cv::Mat> frames;
-  const auto source = OpenVideo(kVideo);
-  cv::Mat frame;
-  while (source && frames.size() < kFrames && (*source)->Read(frame).value_or(false)) {
-    frames.push_back(frame.clone());
-  }
-  return frames;
-}
-
-/// Frames of this width; fewer than kFrames where the video is absent.
-const std::vector<cv::Mat>& FramesOf(int width) {
-  static const std::vector<cv::Mat> video = ReadVideo();
-  static const std::vector<cv::Mat> large = [] {
-    std::vector<cv::Mat> frames(video.size());
-    for (std::size_t i = 0; i < video.size(); ++i) {
-      cv::copyMakeBorder(video[i], frames[i], 0, kLargeSize.height - kVideoSize.height, 0,
-                         kLargeSize.width - kVideoSize.width, cv::BORDER_REFLECT);
-    }
-    return frames;
-  }();
-  return width == kVideoSize.width ? video : large;
-}
 
 ImageSize SizeOf(const benchmark::State& state) {
   return state.range(0) == kVideoSize.width ? kVideoSize : kLargeSize;
