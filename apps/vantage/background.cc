@@ -6,9 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "command.h"
 #include "vantage/background/subtractor.h"
+#include "vantage/base/file.h"
+#include "vantage/rendering/ghost_picture.h"
 #include "vantage/video/mask_writer.h"
 #include "vantage/video/open.h"
 
@@ -25,6 +28,7 @@ struct Flags {
   std::string format = "png";          // or "video"
   std::int64_t start = 0;              // frame of the input
   std::optional<std::int64_t> frames;  // none: to the end
+  fs::path explain;                    // empty: no pictures
   OptionFlags options;
 };
 
@@ -41,27 +45,31 @@ void PrintReport(const BackgroundReport& report, const BackgroundOptions& option
                  const Flags& flags, const CommonFlags& common) {
   if (common.json) {
     nlohmann::ordered_json json = {{"input", flags.input.string()},
-                                   {"output", flags.output.string()},
-                                   {"frames", report.frames},
-                                   {"ghosts", report.ghosts},
-                                   {"ghosts_px", report.ghosts_px},
-                                   {"mixture_seconds", report.mixture_secs},
-                                   {"ghost_seconds", report.ghost_secs},
-                                   {"cleanup_seconds", report.cleanup_secs}};
+                                   {"output", flags.output.string()}};
+    json.update(JsonOf(report));
     RecordOptions(options, json["options"]);
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  PrintTable({{"frames", fmt::format("{}", report.frames)},
-              {"ghosts absorbed", fmt::format("{} ({} px)", report.ghosts, report.ghosts_px)},
-              {"seconds, mixture", fmt::format("{:.2f}", report.mixture_secs)},
-              {"seconds, ghosts", fmt::format("{:.2f}", report.ghost_secs)},
-              {"seconds, clean-up", fmt::format("{:.2f}", report.cleanup_secs)},
-              {"masks", flags.output.string()}});
+  const auto secs = [](double value) { return fmt::format("{:.2f}", value); };
+  std::vector<ReportRow> rows = {
+      {"frames", fmt::format("{}", report.frames)},
+      {"ghosts absorbed",
+       fmt::format("{} px in {} frames", report.ghosts_px, report.ghost_frames)}};
+  for (const DisturbanceEvent& event : report.disturbances.events) {
+    rows.push_back({"disturbance", TextOf(event, flags.start)});
+  }
+  rows.push_back({"seconds, method", secs(report.method_secs)});
+  rows.push_back({"seconds, disturbances", secs(report.disturbance_secs)});
+  if (options.shadows.enabled) rows.push_back({"seconds, shadows", secs(report.shadow_secs)});
+  rows.push_back({"seconds, ghosts", secs(report.ghost_secs)});
+  rows.push_back({"seconds, clean-up", secs(report.cleanup_secs)});
+  rows.push_back({"masks", flags.output.string()});
+  PrintTable(rows);
 }
 
-/// Frames per second of a video of masks: the input's where it has a usable one.
-double VideoRate(const SourceInfo& info) {
+/// Frames per second: the input's where it has a usable one.
+double RateOf(const SourceInfo& info) {
   const double rate = info.frames_per_second.value_or(0);
   return rate >= 1 && rate <= 200 ? rate : 25;
 }
@@ -82,13 +90,18 @@ Status RunBackground(const Flags& flags, const CommonFlags& common) {
                 flags.output.string());
   }
   VANTAGE_ASSIGN_OR_RETURN(const std::unique_ptr<FrameSource> source, OpenInput(flags.input));
-  VANTAGE_ASSIGN_OR_RETURN(BackgroundSubtractor subtractor,
-                           BackgroundSubtractor::Create(source->info().size, options));
+  VANTAGE_ASSIGN_OR_RETURN(
+      BackgroundSubtractor subtractor,
+      BackgroundSubtractor::Create(source->info().size, options, RateOf(source->info())));
   VANTAGE_ASSIGN_OR_RETURN(
       MaskWriter masks,
       MaskWriter::Create(flags.output,
                          flags.format == "video" ? MaskFormat::kVideo : MaskFormat::kPng,
-                         source->info().size, VideoRate(source->info()), flags.force));
+                         source->info().size, RateOf(source->info()), flags.force));
+  std::optional<StagedDirectory> explanations;
+  if (!flags.explain.empty()) {
+    VANTAGE_ASSIGN_OR_RETURN(explanations, StagedDirectory::Create(flags.explain, flags.force));
+  }
   const RunControl control = MakeRunControl(common, "background", "frames");
   VANTAGE_ASSIGN_OR_RETURN(const std::int64_t skipped, source->Skip(flags.start));
   if (skipped < flags.start) {
@@ -102,12 +115,18 @@ Status RunBackground(const Flags& flags, const CommonFlags& common) {
     if (!more) break;
     VANTAGE_RETURN_IF_ERROR(subtractor.Apply(frame, mask, common.threads));
     VANTAGE_RETURN_IF_ERROR(masks.Write(flags.start + done, mask));
+    if (explanations) {
+      VANTAGE_RETURN_IF_ERROR(
+          WritePng(explanations->temporary() / fmt::format("{:06}.png", flags.start + done),
+                   DrawGhosts(frame, subtractor.foreground(), subtractor.verdict())));
+    }
     control.Report(done + 1, total);
   }
   if (subtractor.report().frames == 0) {
     return Fail("{}: holds no frame from {} on", flags.input.string(), flags.start);
   }
   VANTAGE_RETURN_IF_ERROR(masks.Finish());
+  if (explanations) VANTAGE_RETURN_IF_ERROR(explanations->Commit());
   PrintReport(subtractor.report(), options, flags, common);
   return {};
 }
@@ -133,6 +152,11 @@ Command BackgroundCommand() {
                            "One PNG per frame, or one lossless video (masks.mkv, FFV1)")
                 ->check(CLI::IsMember({"png", "video"}))
                 ->capture_default_str();
+            app.add_option("--explain", flags->explain,
+                           "Also write, for each frame, a picture of what was judged: objects "
+                           "outlined in green, ghosts in orange and, when absorbed, red, with "
+                           "the rule's value; in grey what could not be judged")
+                ->type_name("DIR");
             app.add_option("--start", flags->start, "First frame of the input to read [frames]")
                 ->check(CLI::Range(std::int64_t{0}, kMaxFrames))
                 ->type_name("NUMBER")

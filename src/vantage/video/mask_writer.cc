@@ -10,16 +10,12 @@
 
 namespace vantage {
 
-Status WriteMask(const std::filesystem::path& folder, FrameIndex frame, const cv::Mat& mask) {
-  const std::string name = (folder / fmt::format("{:06}.png", frame)).string();
-  if (frame < 0) return Fail("{}: the frame is {}; it must be at least 0", name, frame);
-  if (mask.type() != CV_8UC1 || mask.empty()) {
-    return Fail("{}: the picture is not a mask (one channel of 8 bits)", name);
-  }
+Status WritePng(const std::filesystem::path& path, const cv::Mat& picture) {
+  const std::string name = path.string();
   // Encoded in memory first: cv::imwrite does not notice that the last block found no room.
   std::vector<unsigned char> bytes;
   try {
-    if (!cv::imencode(".png", mask, bytes)) return Fail("{}: cannot be encoded as PNG", name);
+    if (!cv::imencode(".png", picture, bytes)) return Fail("{}: cannot be encoded as PNG", name);
   } catch (const cv::Exception& error) {
     return Fail("{}: cannot be encoded as PNG: {}", name, error.err);
   }
@@ -29,6 +25,15 @@ Status WriteMask(const std::filesystem::path& folder, FrameIndex frame, const cv
   stream.flush();
   if (!stream) return Fail("{}: cannot be written: {}", name, std::strerror(errno));
   return {};
+}
+
+Status WriteMask(const std::filesystem::path& folder, FrameIndex frame, const cv::Mat& mask) {
+  const std::filesystem::path path = folder / fmt::format("{:06}.png", frame);
+  if (frame < 0) return Fail("{}: the frame is {}; it must be at least 0", path.string(), frame);
+  if (mask.type() != CV_8UC1 || mask.empty()) {
+    return Fail("{}: the picture is not a mask (one channel of 8 bits)", path.string());
+  }
+  return WritePng(path, mask);
 }
 
 Result<MaskWriter> MaskWriter::Create(const std::filesystem::path& folder, MaskFormat format,

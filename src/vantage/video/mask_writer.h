@@ -14,6 +14,9 @@
 
 namespace vantage {
 
+/// Writes a picture of 8 bits a channel as a PNG file. Fails when the bytes cannot be written.
+Status WritePng(const std::filesystem::path& path, const cv::Mat& picture);
+
 /// Writes a mask (CV_8UC1) as the PNG file <folder>/<frame as %06d>.png, which OpenMasks reads
 /// back. The folder must exist; give a StagedDirectory's so that a set of masks appears whole or
 /// not at all. Fails on another type of picture, a negative frame, and when the bytes cannot be
