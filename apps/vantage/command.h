@@ -40,6 +40,7 @@ Command EvaluateCommand();
 Command LinkCommand();
 Command OccupancyCommand();
 Command RenderCommand();
+Command ReproduceCommand();
 Command TrackCommand();
 
 /// The flags of one options struct. Flags given on the command line win over what a scene file

@@ -20,8 +20,8 @@ constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
 std::vector<Command> Commands() {
-  return {TrackCommand(), BackgroundCommand(), OccupancyCommand(),
-          LinkCommand(),  EvaluateCommand(),   RenderCommand()};
+  return {TrackCommand(),    BackgroundCommand(), OccupancyCommand(), LinkCommand(),
+          EvaluateCommand(), RenderCommand(),     ReproduceCommand()};
 }
 
 int Run(int argc, char** argv) {
