@@ -55,6 +55,12 @@ void PrintGhosts(const GhostResults& results, const Flags& flags, const CommonFl
 }
 
 Status ReproduceGhosts(const Flags& flags, const CommonFlags& common) {
+  for (const GhostCase& one : StandardGhostCases()) {
+    if (IsInside(flags.data / one.sequence, flags.output)) {
+      return Fail("{}: the output would replace the data; name another folder",
+                  flags.output.string());
+    }
+  }
   VANTAGE_ASSIGN_OR_RETURN(StagedDirectory folder,
                            StagedDirectory::Create(flags.output, flags.force));
   VANTAGE_ASSIGN_OR_RETURN(

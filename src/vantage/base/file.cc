@@ -6,6 +6,7 @@
 #include <openssl/evp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -94,6 +95,14 @@ Status WriteTextFile(const fs::path& path, std::string_view text) {
     if (!stream) return Fail("{}: cannot be written: {}", path.string(), Reason());
   }
   return staged.Commit();
+}
+
+bool IsInside(const fs::path& path, const fs::path& folder) {
+  std::error_code code;
+  const fs::path inner = fs::weakly_canonical(path, code);
+  fs::path outer = fs::weakly_canonical(folder, code);
+  if (!outer.has_filename()) outer = outer.parent_path();  // named with a slash at the end
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
 Result<std::string> Sha256OfFile(const fs::path& path) {

@@ -19,6 +19,9 @@ Result<std::string> ReadTextFile(const std::filesystem::path& path,
 /// `path`. Parent directories are made.
 Status WriteTextFile(const std::filesystem::path& path, std::string_view text);
 
+/// True when `path` is `folder` or lies in it, through symbolic links too; neither need exist.
+bool IsInside(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 /// SHA-256 of a file's bytes in lower-case hexadecimal, as `sha256sum` prints it.
 Result<std::string> Sha256OfFile(const std::filesystem::path& path);
 

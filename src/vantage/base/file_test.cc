@@ -20,6 +20,19 @@ std::ptrdiff_t EntriesIn(const std::filesystem::path& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});
 }
 
+TEST(IsInside, ByPlaceNotByName) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "a/b");
+  std::filesystem::create_directory_symlink(folder / "a", folder / "link");
+  EXPECT_TRUE(IsInside(folder / "a/b", folder / "a"));
+  EXPECT_TRUE(IsInside(folder / "a", folder / "a/"));
+  EXPECT_TRUE(IsInside(folder / "link/b", folder / "a"));
+  EXPECT_TRUE(IsInside(folder / "a/none", folder / "a"));
+  EXPECT_FALSE(IsInside(folder / "a", folder / "a/b"));
+  EXPECT_FALSE(IsInside(folder / "ab", folder / "a"));
+  EXPECT_FALSE(IsInside(folder / "a/../c", folder / "a"));
+}
+
 TEST(File, TextComesBackAsWritten) {
   const TemporaryFolder folder;
   const auto path = folder / "a/b/text.csv";

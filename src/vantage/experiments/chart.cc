@@ -22,7 +22,7 @@ constexpr double kLeft = 52;
 constexpr double kRight = kWidth - 8;
 constexpr double kTop = 46;  // title and legend above
 constexpr double kBottom = kHeight - 36;
-constexpr double kLetter = 5.6;  // mean width of a letter of the legend
+constexpr double kLetter = 6.4;  // mean width of a letter of the legend
 
 struct Style {
   const char* color;

@@ -215,7 +215,7 @@ std::vector<GhostCase> StandardGhostCases() {
                "the check is 10 frames later."},
       {.name = "IBMtest2",
        .sequence = "sbi/IBMtest2",
-       .note = "People walk through an empty corridor: no ghost."},
+       .note = "People walk through an empty hall: no ghost."},
   };
 }
 

@@ -86,7 +86,7 @@ std::string GhostCsv(const GhostResults& results) {
       "sequence,folder,begin,first,last,frames,variant,method,criterion,judgement,threshold,color,"
       "rate,alpha,disturbances,open_px,close_px,min_area_px,tp,fp,fn,tn,recall,precision,f1,"
       "specificity,pwc,fp_peak,fp_peak_frame,check,fp_at_check,ghost_frames,ghosts_px,"
-      "seconds_per_frame\n";
+      "seconds_per_frame,method_secs,disturbance_secs,shadow_secs,ghost_secs,cleanup_secs\n";
   for (const GhostCaseResult& in : results.cases) {
     for (std::size_t i = 0; i < in.runs.size(); ++i) {
       const GhostRun& run = in.runs[i];
@@ -107,8 +107,11 @@ std::string GhostCsv(const GhostResults& results) {
                          Field(run.measures.specificity), Field(run.measures.pwc));
       csv += fmt::format("{},{},{},{},", run.Peak().counts.false_positives, run.Peak().frame,
                          Field(in.used.check), Field(AtCheck(in, run)));
-      csv += fmt::format("{},{},{:.7f}\n", run.report.ghost_frames, run.report.ghosts_px,
-                         run.secs_per_frame);
+      const BackgroundReport& report = run.report;
+      csv += fmt::format("{},{},{:.7f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", report.ghost_frames,
+                         report.ghosts_px, run.secs_per_frame, report.method_secs,
+                         report.disturbance_secs, report.shadow_secs, report.ghost_secs,
+                         report.cleanup_secs);
     }
   }
   return csv;
