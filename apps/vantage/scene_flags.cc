@@ -11,6 +11,7 @@ CLI::Option* SceneFlags::DefineUpToOccupancy(CLI::App& app, const std::string& o
   grid_ = AddOptionFlags(app, GridOptions{}, "", "Grid");
   person_ = AddOptionFlags(app, PersonOptions{}, "person-", "Person");
   background_ = AddOptionFlags(app, BackgroundOptions{}, "background-", "Background");
+  hold_ = AddOptionFlags(app, HoldOptions{}, "hold-", "Hold");
   occupancy_ = AddOptionFlags(app, OccupancyOptions{}, occupancy_prefix, "Occupancy");
   return scene;
 }
@@ -32,6 +33,7 @@ Result<SceneSetup> SceneFlags::Load() const {
   grid_.ApplyTo(setup.scene.grid);
   person_.ApplyTo(setup.scene.person);
   background_.ApplyTo(setup.options.background);
+  hold_.ApplyTo(setup.options.hold);
   occupancy_.ApplyTo(setup.options.occupancy);
   linking_.ApplyTo(setup.options.linking);
   tracks_.ApplyTo(setup.options.tracks);

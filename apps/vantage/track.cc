@@ -57,6 +57,12 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
   rows.push_back({"positions",
                   fmt::format("{}  ({} inferred), {:.1f} people per frame", positions, inferred,
                               static_cast<double>(positions) / static_cast<double>(maps.frames))});
+  if (maps.hold.places > 0) {
+    rows.push_back({"held", fmt::format("{} places where people stood; {} released by time, {} as "
+                                        "ghosts",
+                                        maps.hold.places, maps.hold.released_by_time,
+                                        maps.hold.released_as_ghosts)});
+  }
   rows.push_back({"reading", rate(maps.read_secs)});
   rows.push_back({"background", rate(maps.background_secs)});
   rows.push_back({"occupancy", rate(maps.occupancy_secs)});

@@ -45,7 +45,7 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
   return stream;
 }
 
-Result<bool> MaskStream::Read(std::vector<cv::Mat>& masks) {
+Result<bool> MaskStream::Read(std::vector<cv::Mat>& masks, std::span<const cv::Mat> held) {
   if (frames_read_ == limit_) return false;
   Stopwatch stopwatch;
   VANTAGE_ASSIGN_OR_RETURN(const bool more, reader_.Read(frames_, threads_));
@@ -60,7 +60,8 @@ Result<bool> MaskStream::Read(std::vector<cv::Mat>& masks) {
     if (frames_[camera].empty()) {
       masks[camera] = cv::Mat();
     } else if (subtractors_[camera]) {
-      statuses[camera] = subtractors_[camera]->Apply(frames_[camera], masks[camera], row_threads);
+      statuses[camera] = subtractors_[camera]->Apply(frames_[camera], masks[camera], row_threads,
+                                                     held.empty() ? cv::Mat() : held[camera]);
     } else {
       frames_[camera].copyTo(masks[camera]);
     }

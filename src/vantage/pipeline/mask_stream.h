@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "vantage/background/subtractor.h"
@@ -26,8 +27,9 @@ class MaskStream {
   std::optional<std::int64_t> frame_count() const { return frame_count_; }
 
   /// The next frame: one mask per camera, empty where a camera has no picture now. False at the
-  /// end.
-  Result<bool> Read(std::vector<cv::Mat>& masks);
+  /// end. `held`, none or one for each camera, is where objects are known to stand
+  /// (BackgroundSubtractor::Apply).
+  Result<bool> Read(std::vector<cv::Mat>& masks, std::span<const cv::Mat> held = {});
 
   /// Time spent, all cameras together as wall-clock.
   double read_secs() const { return read_secs_; }

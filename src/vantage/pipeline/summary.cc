@@ -58,6 +58,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   used["grid"] = Recorded(scene.grid);
   used["person"] = Recorded(scene.person);
   used["background"] = Recorded(options.background);
+  used["hold"] = Recorded(options.hold);
   used["occupancy"] = Recorded(options.occupancy);
   used["linking"] = Recorded(options.linking);
   used["tracks"] = Recorded(options.tracks);
@@ -69,6 +70,10 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   counts["grid_rows"] = result.maps.grid.rows;
   counts["area_cells"] = maps.area_cells;
   counts["area_cells_unseen"] = maps.unseen_area_cells;
+  counts["held_places"] = maps.hold.places;
+  counts["held_pictures"] = maps.hold.pictures;
+  counts["held_released_by_time"] = maps.hold.released_by_time;
+  counts["held_released_as_ghosts"] = maps.hold.released_as_ghosts;
   counts["occupancy_iterations_mean"] = maps.mean_iterations;
   counts["occupancy_frames_not_converged"] = maps.frames_not_converged;
   counts["paths"] = result.report.linking.linking.paths;
@@ -82,6 +87,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   stages["read"] = StageJson(maps.read_secs, maps.frames);
   stages["background"] = StageJson(maps.background_secs, maps.frames);
   stages["occupancy"] = StageJson(maps.occupancy_secs, maps.frames);
+  stages["hold"] = StageJson(maps.hold_secs, maps.frames);
   stages["linking"] = StageJson(result.report.linking.linking.seconds, maps.frames);
   stages["total"] = StageJson(result.report.total_secs, maps.frames);
   return json;

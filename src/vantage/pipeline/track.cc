@@ -3,12 +3,14 @@
 #include "vantage/pipeline/track.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "vantage/base/parallel.h"
 #include "vantage/base/stopwatch.h"
 #include "vantage/pipeline/ground.h"
 #include "vantage/pipeline/mask_stream.h"
+#include "vantage/pipeline/recent_tracks.h"
 
 namespace vantage {
 namespace {
@@ -16,10 +18,8 @@ namespace {
 /// Masks of consecutive frames, solved in parallel: frames are independent of each other.
 class FrameBatch {
  public:
-  FrameBatch(const OccupancySolver& solver, int threads)
-      : solver_(solver),
-        masks_(static_cast<std::size_t>(std::max(threads, 1)) * 4),
-        threads_(threads) {}
+  FrameBatch(const OccupancySolver& solver, std::int64_t frames, int threads)
+      : solver_(solver), masks_(static_cast<std::size_t>(frames)), threads_(threads) {}
 
   bool full() const { return used_ == masks_.size(); }
   std::vector<cv::Mat>& Next() { return masks_[used_++]; }
@@ -56,10 +56,61 @@ class FrameBatch {
   int threads_;
 };
 
+/// The way back from the tracker to the masks: the tracks of the last moments name what the next
+/// frames hold.
+class Feedback {
+ public:
+  /// None when nothing is to be held, or no camera learns a background.
+  static Result<std::optional<Feedback>> Create(const Scene& scene, const StageOptions& options,
+                                                const MaskStream& stream,
+                                                const OccupancyMaps& like) {
+    const auto learns = [](const auto& subtractor) { return subtractor.has_value(); };
+    if (!options.hold.standing || std::ranges::none_of(stream.subtractors(), learns)) {
+      return std::nullopt;
+    }
+    std::vector<Camera> cameras;
+    for (const SceneCamera& camera : scene.cameras) cameras.push_back(camera.camera);
+    VANTAGE_ASSIGN_OR_RETURN(OccupiedRegions occupied,
+                             OccupiedRegions::Create(std::move(cameras), scene.person, options.hold,
+                                                     scene.frames_per_second));
+    RecentTracks recent(like, occupied.window_frames(), options.linking, options.tracks,
+                        scene.doors, scene.obstacles);
+    return Feedback(std::move(occupied), std::move(recent));
+  }
+
+  std::span<const cv::Mat> held() const { return occupied_.held(); }
+
+  /// The frame just read.
+  void Judge(const std::vector<cv::Mat>& masks, const MaskStream& stream) {
+    for (std::size_t camera = 0; camera < masks.size(); ++camera) {
+      const auto& subtractor = stream.subtractors()[camera];
+      if (!subtractor || masks[camera].empty()) continue;
+      occupied_.Judge(camera, masks[camera], subtractor->verdict());
+    }
+  }
+
+  /// The maps of the frames read since the last call.
+  Status Update(std::span<const float> maps) {
+    recent_.Add(maps);
+    VANTAGE_ASSIGN_OR_RETURN(const Tracks tracks, recent_.Link());
+    occupied_.Name(tracks, recent_.next_frame());
+    return {};
+  }
+
+  const HoldReport& report() const { return occupied_.report(); }
+
+ private:
+  Feedback(OccupiedRegions occupied, RecentTracks recent)
+      : occupied_(std::move(occupied)), recent_(std::move(recent)) {}
+  OccupiedRegions occupied_;
+  RecentTracks recent_;
+};
+
 }  // namespace
 
 Status BindStages(const Scene& scene, StageOptions& options) {
   VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("background", options.background));
+  VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("hold", options.hold));
   VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("occupancy", options.occupancy));
   VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("linking", options.linking));
   return scene.stages.Bind("tracks", options.tracks);
@@ -84,24 +135,36 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   maps.in_area = std::move(ground.in_area);
   maps.visible = std::move(ground.visible);
 
+  VANTAGE_ASSIGN_OR_RETURN(std::optional<Feedback> feedback,
+                           Feedback::Create(scene, options, stream, maps));
+
   const std::int64_t total = stream.frame_count().value_or(0);
-  FrameBatch batch(solver, threads);
+  // What a frame holds must not depend on the number of threads.
+  FrameBatch batch(solver, feedback ? OccupiedRegions::kFramesBetween : 4 * std::max(threads, 1),
+                   threads);
   std::int64_t frames_read = 0;
   for (bool more = true; more;) {
     while (more && !batch.full()) {
       if (control.Stopped()) return Cancelled();
       std::vector<cv::Mat>& masks = batch.Next();
-      VANTAGE_ASSIGN_OR_RETURN(more, stream.Read(masks));
+      VANTAGE_ASSIGN_OR_RETURN(
+          more, stream.Read(masks, feedback ? feedback->held() : std::span<const cv::Mat>()));
       if (!more) {
         batch.DropLast();
-      } else if (mask_sink) {
-        VANTAGE_RETURN_IF_ERROR(mask_sink(scene.first_frame + frames_read, masks));
+        break;
       }
-      frames_read += more ? 1 : 0;
+      if (feedback) feedback->Judge(masks, stream);
+      if (mask_sink) VANTAGE_RETURN_IF_ERROR(mask_sink(scene.first_frame + frames_read, masks));
+      ++frames_read;
     }
-    const Stopwatch stopwatch;
+    const std::size_t known = maps.values.size();
+    Stopwatch stopwatch;
     VANTAGE_RETURN_IF_ERROR(batch.Solve(maps, report));
-    report.occupancy_secs += stopwatch.Seconds();
+    stopwatch.LapInto(report.occupancy_secs);
+    if (feedback && more) {
+      VANTAGE_RETURN_IF_ERROR(feedback->Update(std::span(maps.values).subspan(known)));
+      stopwatch.LapInto(report.hold_secs);
+    }
     control.Report(report.frames, total);
   }
   if (report.frames == 0) {
@@ -113,6 +176,7 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   for (const auto& subtractor : stream.subtractors()) {
     report.background.push_back(subtractor ? subtractor->report() : BackgroundReport{});
   }
+  if (feedback) report.hold = feedback->report();
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "vantage/linking/link_maps.h"
 #include "vantage/occupancy/maps.h"
 #include "vantage/occupancy/solver.h"
+#include "vantage/pipeline/occupied.h"
 #include "vantage/scene/scene.h"
 #include "vantage/tracks/track.h"
 
@@ -20,12 +21,13 @@ namespace vantage {
 /// The options of every stage.
 struct StageOptions {
   BackgroundOptions background;
+  HoldOptions hold;
   OccupancyOptions occupancy;
   LinkingOptions linking;
   TrackOptions tracks;
 };
 
-/// Sets what the scene's tables [background], [occupancy], [linking] and [tracks] give.
+/// Sets what the scene's tables [background], [hold], [occupancy], [linking] and [tracks] give.
 Status BindStages(const Scene& scene, StageOptions& options);
 
 /// What the way from pictures to maps did.
@@ -41,8 +43,10 @@ struct MapsReport {
   double read_secs = 0;
   double background_secs = 0;
   double occupancy_secs = 0;
+  double hold_secs = 0;
   /// One entry per camera; cameras that deliver masks have an empty one.
   std::vector<BackgroundReport> background;
+  HoldReport hold;
 };
 
 struct MapsResult {
@@ -53,7 +57,9 @@ struct MapsResult {
 /// Takes the masks of each frame as the pipeline sees them (e.g. to write them); may be empty.
 using MaskSink = std::function<Status(FrameIndex frame, const std::vector<cv::Mat>& masks)>;
 
-/// From pictures to occupancy maps.
+/// From pictures to occupancy maps. With options.hold, people found so far who stand are held in
+/// the foreground of the frames that follow (OccupiedRegions); without, and where no camera
+/// delivers colour, every frame is solved by itself.
 Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, int threads,
                                const RunControl& control = {}, const MaskSink& mask_sink = {});
 

@@ -22,7 +22,7 @@ using internal::TableReader;
 
 constexpr std::size_t kMaxFileBytes = 1 << 24;
 constexpr std::int64_t kMaxFrames = 1'000'000'000;
-constexpr std::array<std::string_view, 4> kStages = {"background", "occupancy", "linking",
+constexpr std::array<std::string_view, 5> kStages = {"background", "hold", "occupancy", "linking",
                                                      "tracks"};
 
 Result<Polygon> MakePolygon(const TableReader& area, std::string_view key,

@@ -56,8 +56,9 @@ void VisitOptions(GridOptions& options, OptionVisitor& visitor);
 /// that).
 Result<std::unique_ptr<FrameSource>> OpenSource(const SourceSpec& source);
 
-/// The options tables of the stages ([background], [occupancy], [linking], [tracks]) as read; the
-/// pipeline binds them to the stages' own options, so that the scene does not depend on the stages.
+/// The options tables of the stages ([background], [hold], [occupancy], [linking], [tracks]) as
+/// read; the pipeline binds them to the stages' own options, so that the scene does not depend on
+/// the stages.
 class StageTables {
  public:
   StageTables();

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vantage/base/ids.h"
+#include "vantage/base/result.h"
+#include "vantage/geometry/polygon.h"
+#include "vantage/linking/linker.h"
+#include "vantage/linking/track_builder.h"
+#include "vantage/occupancy/maps.h"
+#include "vantage/tracks/track.h"
+
+namespace vantage {
+
+/// Tracks of the last moments of a recording that is still running: the maps of a sliding window,
+/// linked as a whole recording would be (exactly; some milliseconds a window). Their ids count
+/// within one window.
+class RecentTracks {
+ public:
+  /// `like` gives grid, area, visibility, frame rate and the number of the first frame; its own
+  /// values are not used. `window_frames` >= 1.
+  RecentTracks(const OccupancyMaps& like, std::int64_t window_frames, const LinkingOptions& linking,
+               const TrackOptions& tracks, std::vector<Polygon> doors,
+               std::vector<Polygon> obstacles);
+
+  /// The maps of the frames that follow, one after another; the oldest leave the window.
+  void Add(std::span<const float> maps);
+
+  /// Number of the frame after the last one added.
+  FrameIndex next_frame() const { return window_.first_frame + window_.frame_count(); }
+
+  /// The tracks in the window, as LinkMaps gives them but neither smoothed nor dropped for being
+  /// short.
+  Result<Tracks> Link() const;
+
+ private:
+  OccupancyMaps window_;
+  std::int64_t window_frames_;
+  LinkingOptions linking_;
+  TrackOptions tracks_;
+  std::vector<Polygon> doors_, obstacles_;
+};
+
+}  // namespace vantage
