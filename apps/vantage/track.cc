@@ -58,10 +58,10 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
                   fmt::format("{}  ({} inferred), {:.1f} people per frame", positions, inferred,
                               static_cast<double>(positions) / static_cast<double>(maps.frames))});
   if (maps.hold.places > 0) {
-    rows.push_back({"held", fmt::format("{} places where people stood; {} released by time, {} as "
-                                        "ghosts",
+    rows.push_back({"held", fmt::format("{} places where people stood; {} released by time, {} px "
+                                        "as ghosts",
                                         maps.hold.places, maps.hold.released_by_time,
-                                        maps.hold.released_as_ghosts)});
+                                        maps.hold.released_as_ghosts_px)});
   }
   rows.push_back({"reading", rate(maps.read_secs)});
   rows.push_back({"background", rate(maps.background_secs)});

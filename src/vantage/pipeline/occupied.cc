@@ -54,18 +54,12 @@ cv::Rect Pixels(const PixelBox& box, double margin, ImageSize size) {
   return {left, top, right - left, bottom - top};
 }
 
-/// Pixels of a judged piece inside the rectangle.
-int PixelsInside(const Component& piece, const cv::Rect& rectangle) {
-  const cv::Rect common = piece.window & rectangle;
-  return common.empty() ? 0 : cv::countNonZero(piece.pixels(common - piece.window.tl()));
-}
-
 }  // namespace
 
 void VisitOptions(HoldOptions& o, OptionVisitor& v) {
   v.Flag({"standing", "", "keep people who stand from fading into the background"}, o.standing);
   v.Number({"window", "s", "last stretch in which tracks are looked for"}, o.window_secs,
-           Range::Between(0.1, 60));
+           Range::Between(0.1, 10));
   v.Number({"presence", "", "share of its frames in which somebody must be seen"}, o.presence,
            Range::AboveUpTo(0, 1));
   v.Number({"max_speed", "m/s", "who is slower stands"}, o.max_speed, Range::Above(0));
@@ -86,7 +80,8 @@ OccupiedRegions::OccupiedRegions(std::vector<Camera> cameras, const PersonOption
           std::max<std::int64_t>(1, std::llround(options.window_secs * frames_per_second))),
       speed_per_frame_m_(options.max_speed / frames_per_second),
       limit_frames_(options.limit_secs * frames_per_second),
-      held_(cameras_.size()) {}
+      held_(cameras_.size()),
+      ghosts_(cameras_.size()) {}
 
 Result<OccupiedRegions> OccupiedRegions::Create(std::vector<Camera> cameras,
                                                 const PersonOptions& person,
@@ -101,30 +96,25 @@ Result<OccupiedRegions> OccupiedRegions::Create(std::vector<Camera> cameras,
 }
 
 void OccupiedRegions::Judge(std::size_t camera, const cv::Mat& mask, const GhostVerdict& verdict) {
-  if (held_[camera].empty()) return;
+  cv::Mat& held = held_[camera];
+  if (held.empty()) return;
   ++report_.pictures;
-  bool released = false;
-  for (Place& place : places_) {
-    View& view = place.views[camera];
-    if (!IsHeld(place, view)) continue;
-    int ghost_px = 0;
-    int object_px = 0;
-    for (const JudgedComponent& piece : verdict.judged) {
-      // A piece without a free border was not judged: it has no value.
-      if (!piece.ghost && piece.value <= 0) continue;
-      (piece.ghost ? ghost_px : object_px) += PixelsInside(piece.component, view.rectangle);
+  cv::Mat& ghosts = ghosts_[camera];
+  cv::Mat foreground = mask.clone();  // before ghosts were taken out of it, and the clean-up
+  for (const JudgedComponent& piece : verdict.judged) {
+    const cv::Rect& window = piece.component.window;
+    foreground(window).setTo(255, piece.component.pixels);
+    cv::Mat here = ghosts(window);
+    if (piece.ghost) {
+      cv::add(here, 1, here, piece.component.pixels);
+    } else if (piece.value > 0) {  // others had no free border to be judged by
+      here.setTo(0, piece.component.pixels);
     }
-    const int foreground_px = cv::countNonZero(mask(view.rectangle));
-    if (2 * ghost_px > foreground_px) {
-      ++view.ghosts;
-    } else if (2 * object_px > foreground_px) {
-      view.ghosts = 0;
-    }
-    if (view.ghosts < options_.ghost_verdicts) continue;
-    view.released = released = true;
-    ++report_.released_as_ghosts;
   }
-  if (released) Draw(camera);
+  ghosts.setTo(0, foreground == 0);
+  const cv::Mat released = held & (ghosts >= options_.ghost_verdicts);
+  report_.released_as_ghosts_px += cv::countNonZero(released);
+  held.setTo(0, released);
 }
 
 /// The nearest place that no other track of this call stands at; a new one where none is near.
@@ -143,11 +133,11 @@ OccupiedRegions::Place& OccupiedRegions::PlaceAt(const Vector2d& position_m, Fra
                                     .since = next,
                                     .last = next,
                                     .expired = false,
-                                    .views = std::vector<View>(cameras_.size())});
+                                    .rectangles = std::vector<cv::Rect>(cameras_.size())});
 }
 
 void OccupiedRegions::Name(const Tracks& tracks, FrameIndex next) {
-  named_ = next;
+  std::erase_if(places_, [&](const Place& place) { return next - place.last > window_frames_; });
   const double least = options_.presence * static_cast<double>(window_frames_);
   for (const Track& track : tracks) {
     const std::optional<Vector2d> position_m = StandsAt(track, least, speed_per_frame_m_);
@@ -160,28 +150,31 @@ void OccupiedRegions::Name(const Tracks& tracks, FrameIndex next) {
     }
     for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
       const auto box = PersonBox(cameras_[camera], *position_m, person_);
-      place.views[camera].rectangle =
+      place.rectangles[camera] =
           box ? Pixels(*box, options_.margin, cameras_[camera].size()) : cv::Rect();
     }
   }
-  std::erase_if(places_, [&](const Place& place) { return next - place.last > window_frames_; });
-  for (std::size_t camera = 0; camera < cameras_.size(); ++camera) Draw(camera);
+  for (std::size_t camera = 0; camera < cameras_.size(); ++camera) Draw(camera, next);
 }
 
-bool OccupiedRegions::IsHeld(const Place& place, const View& view) const {
-  return place.last == named_ && !place.expired && !view.released && !view.rectangle.empty();
-}
-
-void OccupiedRegions::Draw(std::size_t camera) {
+void OccupiedRegions::Draw(std::size_t camera, FrameIndex next) {
+  const ImageSize size = cameras_[camera].size();
   cv::Mat held;
   for (const Place& place : places_) {
-    const View& view = place.views[camera];
-    if (!IsHeld(place, view)) continue;
-    const ImageSize size = cameras_[camera].size();
+    const cv::Rect& rectangle = place.rectangles[camera];
+    if (place.last != next || place.expired || rectangle.empty()) continue;
     if (held.empty()) held = cv::Mat::zeros(size.height, size.width, CV_8UC1);
-    held(view.rectangle).setTo(255);
+    held(rectangle).setTo(255);
   }
   held_[camera] = held;
+  cv::Mat& ghosts = ghosts_[camera];
+  if (held.empty()) {
+    ghosts = cv::Mat();
+  } else if (ghosts.empty()) {
+    ghosts = cv::Mat::zeros(size.height, size.width, CV_8UC1);
+  } else {
+    held.setTo(0, ghosts >= options_.ghost_verdicts);
+  }
 }
 
 }  // namespace vantage

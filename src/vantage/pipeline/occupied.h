@@ -22,7 +22,7 @@ namespace vantage {
 struct HoldOptions {
   /// People who stand are kept from fading into the background.
   bool standing = true;
-  /// Tracks are looked for in this last stretch, 0.1 <= window_secs <= 60.
+  /// Tracks are looked for in this last stretch, 0.1 <= window_secs <= 10.
   double window_secs = 2;
   /// Somebody is believed who is seen in at least this share of its frames,
   /// 0 < presence <= 1,
@@ -35,18 +35,19 @@ struct HoldOptions {
   /// The way out when the tracker is wrong: nobody is held at one place for longer,
   /// 0 < limit_secs <= 86400,
   double limit_secs = 120;
-  /// nor in a camera whose ghost detection judged what is seen there a ghost this many times in a
-  /// row, >= 1.
-  int ghost_verdicts = 15;
+  /// and no pixel that ghost detection found in a ghost this many times in a row,
+  /// 1 <= ghost_verdicts <= 255. A little less than twice its own agree_frames: what it would
+  /// absorb twice is absorbed the second time.
+  int ghost_verdicts = 5;
 };
 void VisitOptions(HoldOptions& options, OptionVisitor& visitor);
 
 /// What was held.
 struct HoldReport {
-  std::int64_t places = 0;    ///< at which somebody stood
-  std::int64_t pictures = 0;  ///< of all cameras together, in which something was held
-  std::int64_t released_by_time = 0;
-  std::int64_t released_as_ghosts = 0;  ///< counted for each camera
+  std::int64_t places = 0;            ///< at which somebody stood
+  std::int64_t pictures = 0;          ///< of all cameras together, in which something was held
+  std::int64_t released_by_time = 0;  ///< places
+  std::int64_t released_as_ghosts_px = 0;
 };
 
 /// The pixels that each camera holds for the sake of people who stand: from the tracker's own
@@ -54,13 +55,16 @@ struct HoldReport {
 ///
 /// A *place* is where a believed track stands, up to a metre around its first position. It is held,
 /// as the rectangles of a person there in all views, while a track stands there. It is released
-///  - at once when no track stands there any more: the evidence of the masks fell, or they went;
-///  - in all cameras when it was first held limit_secs ago;
-///  - in one camera when `ghost_verdicts` verdicts in a row say that most of the foreground in its
-///    rectangle is a ghost there (no edges of its own). A verdict for an object starts the count
-///    anew; frames in which most of it is not judged do not count.
-/// A released place stays so until no track has stood there for a whole window, so that the same
-/// mistake does not begin again; what is not held fades or is absorbed as usual.
+/// when none does any more (they went, or the evidence of the masks fell), and when it was first
+/// held limit_secs ago; then it stays released until no track has stood there for a whole window,
+/// so that the same mistake does not begin again.
+///
+/// A pixel inside is released when `ghost_verdicts` verdicts of its camera in a row found it in a
+/// ghost: in a piece of foreground that has no edges of its own. A verdict for an object starts the
+/// count anew; frames in which its piece is not judged do not count. It is held again when a
+/// verdict is for an object, and when it has become background.
+///
+/// What is released fades or is absorbed as usual.
 class OccupiedRegions {
  public:
   /// Frames between two calls of Name: fading takes hundreds, so this lag costs nothing.
@@ -87,25 +91,19 @@ class OccupiedRegions {
   const HoldReport& report() const { return report_; }
 
  private:
-  /// A place in one camera.
-  struct View {
-    cv::Rect rectangle;  ///< of the person, margin included; empty where not seen
-    int ghosts = 0;      ///< verdicts in a row
-    bool released = false;
-  };
   struct Place {
     Eigen::Vector2d first_m;  ///< position when it was first named
     FrameIndex since = 0;     ///< first frame for which it was named
     FrameIndex last = 0;      ///< the last call that named it
     bool expired = false;
-    std::vector<View> views;  ///< by camera
+    /// Of the person in each camera, margin included; empty where not seen.
+    std::vector<cv::Rect> rectangles;
   };
 
   OccupiedRegions(std::vector<Camera> cameras, const PersonOptions& person,
                   const HoldOptions& options, double frames_per_second);
   Place& PlaceAt(const Eigen::Vector2d& position_m, FrameIndex next);
-  bool IsHeld(const Place& place, const View& view) const;
-  void Draw(std::size_t camera);
+  void Draw(std::size_t camera, FrameIndex next);
 
   std::vector<Camera> cameras_;
   PersonOptions person_;
@@ -113,9 +111,11 @@ class OccupiedRegions {
   std::int64_t window_frames_ = 0;
   double speed_per_frame_m_ = 0;
   double limit_frames_ = 0;
-  FrameIndex named_ = 0;  ///< `next` of the last call of Name
   std::vector<Place> places_;
   std::vector<cv::Mat> held_;
+  /// For each camera that holds something, CV_8UC1: verdicts in a row that found the pixel in a
+  /// ghost.
+  std::vector<cv::Mat> ghosts_;
   HoldReport report_;
 };
 

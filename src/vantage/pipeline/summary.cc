@@ -73,7 +73,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   counts["held_places"] = maps.hold.places;
   counts["held_pictures"] = maps.hold.pictures;
   counts["held_released_by_time"] = maps.hold.released_by_time;
-  counts["held_released_as_ghosts"] = maps.hold.released_as_ghosts;
+  counts["held_released_as_ghosts_px"] = maps.hold.released_as_ghosts_px;
   counts["occupancy_iterations_mean"] = maps.mean_iterations;
   counts["occupancy_frames_not_converged"] = maps.frames_not_converged;
   counts["paths"] = result.report.linking.linking.paths;
