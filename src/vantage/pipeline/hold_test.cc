@@ -234,12 +234,12 @@ TEST(Office, TheManWhoStandsStaysForeground) {
   auto scene =
       LoadScene(std::filesystem::path(VANTAGE_SOURCE_DIR) / "examples/office/scene.toml", data);
   ASSERT_TRUE(scene) << MessageOf(scene);
-  constexpr FrameIndex kFirst = 300;  // so that the background is known when he comes
+  constexpr FrameIndex kFirst = 400;  // so that the background is known when he comes
   scene->first_frame = kFirst;
-  scene->frame_count = 960;
+  scene->frame_count = 860;
   StageOptions options;
   ASSERT_TRUE(BindStages(*scene, options));
-  options.occupancy.reduction = 4;
+  options.occupancy.reduction = 6;
   const auto truth = OpenTruth(data);
   ASSERT_TRUE(truth) << MessageOf(truth);
   const auto measure = [&](const std::function<const cv::Mat&(FrameIndex)>& mask_of) {
