@@ -27,8 +27,9 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
     }
     subtractors.emplace_back();
     if (info.content == FrameContent::kColor) {
-      VANTAGE_ASSIGN_OR_RETURN(subtractors.back(),
-                               BackgroundSubtractor::Create(info.size, options));
+      VANTAGE_ASSIGN_OR_RETURN(
+          subtractors.back(),
+          BackgroundSubtractor::Create(info.size, options, scene.frames_per_second));
     }
     inputs.push_back({.source = std::move(*source), .offset_frames = camera.source.offset_frames});
   }
