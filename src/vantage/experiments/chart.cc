@@ -154,7 +154,9 @@ std::string ToSvg(const LineChart& chart) {
   const Axis y{.low = 0, .high = highest > 0 ? highest : 1, .from = kBottom, .to = kTop};
   std::string svg = Open(chart.title) + YAxis(y);
   const double step = std::max(1.0, TickStep(x.high - x.low));
-  for (double value = std::ceil(x.low / step) * step; value <= x.high; value += step) {
+  const double first_tick = std::ceil(x.low / step) * step;
+  for (int i = 0; first_tick + i * step <= x.high; ++i) {
+    const double value = first_tick + i * step;
     svg += Line(x.At(value), kBottom, x.At(value), kBottom + 4, "stroke=\"#555\"");
     svg += Text(x.At(value), kBottom + 16, "middle", fmt::format("{:.10g}", value));
   }
