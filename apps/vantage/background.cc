@@ -32,15 +32,6 @@ struct Flags {
   OptionFlags options;
 };
 
-/// True when `path` is `folder` or lies in it.
-bool IsInside(const fs::path& path, const fs::path& folder) {
-  std::error_code code;
-  const fs::path inner = fs::weakly_canonical(path, code);
-  fs::path outer = fs::weakly_canonical(folder, code);
-  if (!outer.has_filename()) outer = outer.parent_path();  // named with a slash at the end
-  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
-}
-
 void PrintReport(const BackgroundReport& report, const BackgroundOptions& options,
                  const Flags& flags, const CommonFlags& common) {
   if (common.json) {
