@@ -9,6 +9,7 @@
 #include "command.h"
 #include "scene_flags.h"
 #include "scene_masks.h"
+#include "vantage/background/report.h"
 #include "vantage/base/file.h"
 #include "vantage/occupancy/map_file.h"
 #include "vantage/pipeline/summary.h"
@@ -62,6 +63,12 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
                                         "as ghosts",
                                         maps.hold.places, maps.hold.released_by_time,
                                         maps.hold.released_as_ghosts_px)});
+  }
+  for (std::size_t i = 0; i < maps.background.size(); ++i) {
+    for (const DisturbanceEvent& event : maps.background[i].disturbances.events) {
+      rows.push_back({"disturbance", fmt::format("{}: {}", scene.cameras[i].name,
+                                                 TextOf(event, scene.first_frame))});
+    }
   }
   rows.push_back({"reading", rate(maps.read_secs)});
   rows.push_back({"background", rate(maps.background_secs)});

@@ -3,6 +3,7 @@
 // The way back from the tracker to the masks, on drawn and on real pictures.
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -13,6 +14,7 @@
 #include "vantage/occupancy/solver.h"
 #include "vantage/pipeline/ground.h"
 #include "vantage/pipeline/mask_stream.h"
+#include "vantage/pipeline/summary.h"
 #include "vantage/pipeline/track.h"
 #include "vantage/video/sequence.h"
 
@@ -131,6 +133,27 @@ std::function<double(int)> ComesAndStands(int leaves) {
 /// Share of the rectangle that is foreground.
 double ShareOf(const cv::Mat& mask, const cv::Rect& rectangle) {
   return static_cast<double>(cv::countNonZero(mask(rectangle))) / rectangle.area();
+}
+
+TEST_F(DrawnScene, TheRecordSaysWhatDisturbedTheCamera) {
+  Draw(140, ComesAndStands(120));
+  for (int frame = 80; frame < 90; ++frame) {
+    cv::imwrite((folder_ / fmt::format("pictures/{:06d}.bmp", frame)).string(),
+                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(4)));
+  }
+  const Scene scene = Load();
+  const auto result = TrackPeople(scene, Options(), 2);
+  ASSERT_TRUE(result) << MessageOf(result);
+  const auto summary = Summarize({.arguments = {}, .scene = {}, .data = {}, .threads = 2}, scene,
+                                 Options(), *result);
+  ASSERT_TRUE(summary) << MessageOf(summary);
+  const auto& camera = (*summary)["background"]["camera"];
+  EXPECT_EQ(camera["frames"], 140);
+  EXPECT_EQ(camera["skipped_frames"], 10);
+  ASSERT_EQ(camera["events"].size(), 1u) << camera.dump();
+  EXPECT_EQ(camera["events"][0]["kind"], "black");
+  EXPECT_EQ(camera["events"][0]["frame"], 80);
+  EXPECT_EQ(camera["events"][0]["frames"], 10);
 }
 
 TEST_F(DrawnScene, WhoStandsFor600FramesStaysForeground) {

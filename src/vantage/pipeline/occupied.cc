@@ -107,7 +107,7 @@ void OccupiedRegions::Judge(std::size_t camera, const cv::Mat& mask, const Ghost
     cv::Mat here = ghosts(window);
     if (piece.ghost) {
       cv::add(here, 1, here, piece.component.pixels);
-    } else if (piece.value > 0) {  // others had no free border to be judged by
+    } else if (piece.decided) {
       here.setTo(0, piece.component.pixels);
     }
   }

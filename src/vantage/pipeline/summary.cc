@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "vantage/background/report.h"
 #include "vantage/base/file.h"
 #include "vantage/base/version.h"
 
@@ -82,6 +83,12 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   std::size_t positions = 0;
   for (const Track& track : result.tracks) positions += track.points.size();
   counts["positions"] = positions;
+
+  Json& cameras = json["background"] = Json::object();
+  for (std::size_t i = 0; i < maps.background.size(); ++i) {
+    // Cameras that deliver masks learn no background.
+    if (maps.background[i].frames > 0) cameras[scene.cameras[i].name] = JsonOf(maps.background[i]);
+  }
 
   Json& stages = json["stages"];
   stages["read"] = StageJson(maps.read_secs, maps.frames);
