@@ -14,8 +14,8 @@ namespace vantage {
 /// mixture model for real-time tracking with shadow detection" (AVBS 2001, printed 2002),
 /// section 3.
 /// The defaults were chosen on CDnet's traffic (F1 0.733 without and 0.743 with) and SBI's IBMtest2
-/// (0.942, 0.946); on CDnet's office up to frame 900 (0.862, 0.863) and SBI's CaVignal (0.606, 0.604), on which
-/// they were not chosen, they change nothing, so the rejection is off.
+/// (0.942, 0.946); on CDnet's office up to frame 900 (0.862, 0.863) and SBI's CaVignal (0.606,
+/// 0.604), on which they were not chosen, they change nothing, so the rejection is off.
 struct ShadowOptions {
   bool enabled = false;
   /// tau: a shadow keeps at least this share of the background's brightness, 0 < tau < 1.
