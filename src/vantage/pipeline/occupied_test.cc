@@ -52,14 +52,16 @@ cv::Rect HeldRectangle(const OccupiedRegions& regions, std::size_t camera = 0) {
   return held.empty() ? cv::Rect() : cv::boundingRect(held);
 }
 
+enum class Found { kNothing, kObject, kGhost };
+
 /// A verdict on one piece.
-GhostVerdict VerdictOn(const cv::Rect& piece, double value, bool ghost) {
+GhostVerdict VerdictOn(const cv::Rect& piece, Found found) {
   return {.judged = {{.component = {.box = piece,
                                     .area_px = piece.area(),
                                     .window = piece,
                                     .pixels = cv::Mat(piece.size(), CV_8UC1, cv::Scalar(255))},
-                      .value = value,
-                      .ghost = ghost}},
+                      .decided = found != Found::kNothing,
+                      .ghost = found == Found::kGhost}},
           .ghosts = {}};
 }
 
@@ -158,18 +160,18 @@ TEST(OccupiedRegions, ReleasesPixelsThatVerdictsInARowFindInAGhost) {
   const cv::Rect piece(held.x + 2, held.y + 2, 5, 9);
   cv::Mat mask(120, 160, CV_8UC1, cv::Scalar(0));
   mask(held).setTo(255);
-  const auto judge = [&](double value, bool ghost) {
-    regions.Judge(0, mask, VerdictOn(piece, value, ghost));
+  const auto judge = [&](Found found) {
+    regions.Judge(0, mask, VerdictOn(piece, found));
     regions.Judge(1, mask, {});
     return held.area() - cv::countNonZero(regions.held()[0]);
   };
-  EXPECT_EQ(judge(0.01, true), 0);
-  EXPECT_EQ(judge(0.01, true), 0);
-  EXPECT_EQ(judge(0.9, false), 0) << "an object after all: the count starts anew";
-  EXPECT_EQ(judge(0.01, true), 0);
-  EXPECT_EQ(judge(0, false), 0) << "not judged: does not count";
-  EXPECT_EQ(judge(0.01, true), 0);
-  EXPECT_EQ(judge(0.01, true), piece.area());
+  EXPECT_EQ(judge(Found::kGhost), 0);
+  EXPECT_EQ(judge(Found::kGhost), 0);
+  EXPECT_EQ(judge(Found::kObject), 0) << "an object after all: the count starts anew";
+  EXPECT_EQ(judge(Found::kGhost), 0);
+  EXPECT_EQ(judge(Found::kNothing), 0) << "not judged: does not count";
+  EXPECT_EQ(judge(Found::kGhost), 0);
+  EXPECT_EQ(judge(Found::kGhost), piece.area());
   EXPECT_EQ(HeldRectangle(regions, 1), held) << "each camera judges for itself";
   EXPECT_EQ(regions.report().released_as_ghosts_px, piece.area());
   // It stays released when it is named again ...
