@@ -74,14 +74,15 @@ double Epd(const cv::Mat& bgr, const BorderRegions& border) {
 
 /// Shares of the colours inside the region; empty where the region is.
 std::vector<double> ColorHistogram(const cv::Mat& bgr, const cv::Mat& region, int bins) {
-  std::vector<double> histogram(static_cast<std::size_t>(bins * bins * bins), 0.0);
+  const auto levels = static_cast<std::size_t>(bins);
+  std::vector<double> histogram(levels * levels * levels, 0.0);
   int total = 0;
   for (int y = 0; y < region.rows; ++y) {
     for (int x = 0; x < region.cols; ++x) {
       if (region.at<std::uint8_t>(y, x) == 0) continue;
       const auto& color = bgr.at<cv::Vec3b>(y, x);
-      const auto bin = [&](int channel) { return color[channel] * bins / 256; };
-      ++histogram[static_cast<std::size_t>((bin(0) * bins + bin(1)) * bins + bin(2))];
+      const auto bin = [&](int channel) { return color[channel] * levels / 256; };
+      ++histogram[(bin(0) * levels + bin(1)) * levels + bin(2)];
       ++total;
     }
   }

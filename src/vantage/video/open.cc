@@ -256,7 +256,7 @@ Result<std::unique_ptr<FrameSource>> OpenMasks(const fs::path& path) {
   std::error_code code;
   const bool video_inside = fs::exists(path / kMaskVideoName, code);
   VANTAGE_ASSIGN_OR_RETURN(std::unique_ptr<FrameSource> pictures,
-                           video_inside ? OpenVideo(path / kMaskVideoName) : OpenInput(path));
+                           OpenInput(video_inside ? path / kMaskVideoName : path));
   return std::make_unique<MaskSource>(std::move(pictures));
 }
 
