@@ -43,8 +43,6 @@ struct LabelledFrame {
 /// A variant under way on a case.
 struct ActiveRun {
   BackgroundSubtractor subtractor;
-  /// OpenCV's KNN draws from the generator of the thread that it runs on: each run brings its own.
-  cv::RNG rng = {};
   double seconds = 0;
   cv::Mat mask = {};
   GhostRun result = {};
@@ -114,10 +112,7 @@ Status Advance(const std::vector<LabelledFrame>& batch, const OpenCase& on, Acti
   for (const LabelledFrame& frame : batch) {
     if (control.Stopped()) return Cancelled();
     Stopwatch watch;
-    std::swap(cv::theRNG(), run.rng);
-    const Status applied = run.subtractor.Apply(frame.bgr, run.mask, 1);
-    std::swap(cv::theRNG(), run.rng);
-    VANTAGE_RETURN_IF_ERROR(applied);
+    VANTAGE_RETURN_IF_ERROR(run.subtractor.Apply(frame.bgr, run.mask, 1));
     watch.LapInto(run.seconds);
     if (frame.labels.empty()) continue;
     const Result<MaskCounts> counts = CountMask(frame.labels, run.mask, on.truth.roi);
