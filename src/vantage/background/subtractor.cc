@@ -8,6 +8,13 @@
 #include "vantage/base/stopwatch.h"
 
 namespace vantage {
+namespace {
+
+BackgroundPicture PictureOf(const BackgroundMethod& method) {
+  return [&method](const cv::Rect& region) { return method.BackgroundImage(region); };
+}
+
+}  // namespace
 
 void VisitOptions(BackgroundOptions& options, OptionVisitor& visitor) {
   visitor.Choice(
@@ -88,11 +95,11 @@ Status BackgroundSubtractor::CheckMask(const cv::Mat& mask) const {
 Status BackgroundSubtractor::Learn(const cv::Mat& frame, cv::Mat& mask, int threads,
                                    const cv::Mat& held) {
   Stopwatch watch;
-  const auto background = [this](const cv::Rect& r) { return method_->BackgroundImage(r); };
   VANTAGE_RETURN_IF_ERROR(method_->Apply(frame, held, mask, threads));
   VANTAGE_RETURN_IF_ERROR(CheckMask(mask));
   watch.LapInto(report_.method_secs);
-  VANTAGE_ASSIGN_OR_RETURN(const Disturbance found, disturbances_.Inspect(frame, mask, background));
+  VANTAGE_ASSIGN_OR_RETURN(const Disturbance found,
+                           disturbances_.Inspect(frame, mask, PictureOf(*method_)));
   if (found.action != DisturbanceAction::kNone) {
     reliable_ = false;
     bool relit = false;
@@ -108,8 +115,7 @@ Status BackgroundSubtractor::Learn(const cv::Mat& frame, cv::Mat& mask, int thre
 }
 
 Status BackgroundSubtractor::TakeGhosts(const cv::Mat& frame, cv::Mat& mask, const cv::Mat& held) {
-  const auto background = [this](const cv::Rect& r) { return method_->BackgroundImage(r); };
-  VANTAGE_ASSIGN_OR_RETURN(verdict_, ghosts_.Judge(frame, mask, background));
+  VANTAGE_ASSIGN_OR_RETURN(verdict_, ghosts_.Judge(frame, mask, PictureOf(*method_)));
   if (verdict_.ghosts.empty()) return {};
   if (!held.empty()) {
     verdict_.ghosts.setTo(0, held);
@@ -139,9 +145,8 @@ Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int thread
   if (reliable_) {
     VANTAGE_RETURN_IF_ERROR(Learn(frame, mask, threads, held));
     watch = {};
-    const auto background = [this](const cv::Rect& r) { return method_->BackgroundImage(r); };
     VANTAGE_ASSIGN_OR_RETURN(const int shadows_px,
-                             RejectShadows(frame, mask, background, options_.shadows));
+                             RejectShadows(frame, mask, PictureOf(*method_), options_.shadows));
     report_.shadows_px += shadows_px;
     watch.LapInto(report_.shadow_secs);
     mask.copyTo(judged_mask_);
@@ -150,11 +155,9 @@ Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int thread
     VANTAGE_RETURN_IF_ERROR(CleanMask(mask, options_.cleanup));
     watch.LapInto(report_.cleanup_secs);
     mask.copyTo(last_mask_);
-  } else if (seen.kind == DisturbanceKind::kFreeze && !last_mask_.empty()) {
-    last_mask_.copyTo(mask);
-    mask.copyTo(judged_mask_);
   } else {
-    mask = cv::Mat::zeros(frame.size(), CV_8UC1);
+    const bool frozen = seen.kind == DisturbanceKind::kFreeze && !last_mask_.empty();
+    mask = frozen ? last_mask_.clone() : cv::Mat::zeros(frame.size(), CV_8UC1);
     mask.copyTo(judged_mask_);
   }
   ++report_.frames;
