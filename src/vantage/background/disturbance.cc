@@ -48,15 +48,6 @@ constexpr double kResidue = 0.04;
 constexpr double kMoved_secs = 0.4;  // a moved camera's shift is the same for so long,
 constexpr double kSameShift = 0.1;   // but for this share of it
 
-/// Fails when the background picture is not what was asked for.
-Status CheckPicture(const cv::Mat& picture, cv::Size size) {
-  if (picture.type() == CV_8UC3 && picture.size() == size) return {};
-  return Fail(
-      "disturbances: the background picture is {}x{} px of type {}; it must be {}x{} px of type "
-      "CV_8UC3",
-      picture.cols, picture.rows, cv::typeToString(picture.type()), size.width, size.height);
-}
-
 /// SamplePixels of the background; asks only for the rows that hold samples. Empty where the method
 /// has no picture of it.
 Result<cv::Mat> SampleBackground(const BackgroundPicture& background, cv::Size size, int step_px) {
@@ -64,7 +55,7 @@ Result<cv::Mat> SampleBackground(const BackgroundPicture& background, cv::Size s
   for (int y = step_px / 2; y < size.height; y += step_px) {
     const cv::Mat row = background({0, y, size.width, 1});
     if (row.empty()) return cv::Mat();
-    VANTAGE_RETURN_IF_ERROR(CheckPicture(row, {size.width, 1}));
+    VANTAGE_RETURN_IF_ERROR(CheckBackgroundPicture("disturbances", row, {size.width, 1}));
     cv::Mat samples(1, (size.width - step_px / 2 + step_px - 1) / step_px, CV_8UC3);
     for (int x = 0; x < samples.cols; ++x) {
       samples.at<cv::Vec3b>(0, x) = row.at<cv::Vec3b>(0, step_px / 2 + x * step_px);
@@ -272,7 +263,7 @@ Result<cv::Mat> DisturbanceDetector::GainOfLight(const cv::Mat& mask,
     return cv::Mat();
   }
   const cv::Mat picture = background({0, 0, size_.width, size_.height});
-  VANTAGE_RETURN_IF_ERROR(CheckPicture(picture, size));
+  VANTAGE_RETURN_IF_ERROR(CheckBackgroundPicture("disturbances", picture, size));
   DisturbanceEvent& event = Note(DisturbanceKind::kLight, FramesOf(kSettling_secs));
   event.factor *= change.factor;
   if (sudden || residue >= kResidue) {
@@ -288,7 +279,7 @@ Result<bool> DisturbanceDetector::IsMoved(const cv::Mat& bgr, const BackgroundPi
   next_shift_check_ = frame_ + kShiftChecksApart;
   const cv::Mat picture = background({0, 0, size_.width, size_.height});
   if (picture.empty()) return false;
-  VANTAGE_RETURN_IF_ERROR(CheckPicture(picture, bgr.size()));
+  VANTAGE_RETURN_IF_ERROR(CheckBackgroundPicture("disturbances", picture, bgr.size()));
   const std::optional<CameraShift> shift = EstimateCameraShift(bgr, picture, options_.moved_px);
   if (!shift) {
     shift_px_.reset();

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "vantage/background/ghosts.h"
+#include "vantage/background/background_picture.h"
 #include "vantage/base/options.h"
 #include "vantage/base/result.h"
 #include "vantage/geometry/camera.h"

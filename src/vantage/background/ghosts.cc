@@ -172,12 +172,7 @@ Status GhostDetector::JudgePiece(const cv::Mat& bgr, const BackgroundPicture& ba
             "algorithm does not have; choose epd or cb",
             NameOf(rule.criterion));
       }
-      if (behind.type() != CV_8UC3 || behind.size() != window.size()) {
-        return Fail(
-            "ghosts: the background picture is {}x{} px of type {}; it must be {}x{} px of type "
-            "CV_8UC3",
-            behind.cols, behind.rows, cv::typeToString(behind.type()), window.width, window.height);
-      }
+      VANTAGE_RETURN_IF_ERROR(CheckBackgroundPicture("ghosts", behind, window.size()));
     }
     judged.value = CriterionValue(bgr(judged.component.window), behind, border, rule);
     judged.ghost = judged.value <= rule.threshold();

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "vantage/background/background_picture.h"
 #include "vantage/background/components.h"
 #include "vantage/background/criteria.h"
 #include "vantage/base/options.h"
@@ -54,11 +54,6 @@ struct GhostOptions {
   int agree_frames = 3;
 };
 void VisitOptions(GhostOptions& options, OptionVisitor& visitor);
-
-/// What edge-based rules ask of a background algorithm besides its mask: the picture of the
-/// background inside a region, CV_8UC3 blue green red of the region's size; an empty picture or
-/// function where the algorithm has none.
-using BackgroundPicture = std::function<cv::Mat(const cv::Rect& region)>;
 
 /// A component, or a piece of one, and what was found about it.
 struct JudgedComponent {

@@ -59,12 +59,7 @@ Result<int> RejectShadows(const cv::Mat& bgr, cv::Mat& mask, const BackgroundPic
       const cv::Rect tile = cv::Rect(left, top, kTile_px, kTile_px) & whole;
       if (cv::countNonZero(mask(tile)) == 0) continue;
       const cv::Mat behind = background(tile);
-      if (behind.type() != CV_8UC3 || behind.size() != tile.size()) {
-        return Fail(
-            "shadows: the background picture is {}x{} px of type {}; it must be {}x{} px of type "
-            "CV_8UC3",
-            behind.cols, behind.rows, cv::typeToString(behind.type()), tile.width, tile.height);
-      }
+      VANTAGE_RETURN_IF_ERROR(CheckBackgroundPicture("shadows", behind, tile.size()));
       for (int y = 0; y < tile.height; ++y) {
         std::uint8_t* foreground = mask.ptr(top + y, left);
         const auto* seen = bgr.ptr<cv::Vec3b>(top + y, left);

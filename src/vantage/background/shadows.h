@@ -4,7 +4,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "vantage/background/ghosts.h"
+#include "vantage/background/background_picture.h"
 #include "vantage/base/options.h"
 #include "vantage/base/result.h"
 
