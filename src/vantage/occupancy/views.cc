@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace vantage {
 namespace {
@@ -39,6 +41,21 @@ cv::Rect Rectangle(const PixelBox& box, ImageSize size) {
   return rectangle.empty() ? cv::Rect() : rectangle;
 }
 
+/// Takes the rectangles without any informative pixel from the view.
+void DropBlindRectangles(CameraView& view) {
+  cv::Mat share;
+  view.informative.convertTo(share, CV_32F, 1.0 / 255);
+  cv::resize(share, share, cv::Size(view.size.width, view.size.height), 0, 0, cv::INTER_AREA);
+  cv::Mat_<int> sums;
+  cv::integral(share > 0, sums, CV_32S);
+  for (cv::Rect& r : view.rectangles) {
+    const int right = r.x + r.width, bottom = r.y + r.height;
+    const int speaking =
+        sums(bottom, right) - sums(r.y, right) - sums(bottom, r.x) + sums(r.y, r.x);
+    if (speaking == 0) r = cv::Rect();
+  }
+}
+
 }  // namespace
 
 ImageSize ReducedSize(ImageSize size, int reduction) {
@@ -49,9 +66,19 @@ ImageSize ReducedSize(ImageSize size, int reduction) {
 }
 
 Result<CameraView> BuildView(const Camera& camera, const GroundGrid& grid,
-                             const PersonOptions& person, Visibility rule, int reduction) {
+                             const PersonOptions& person, Visibility rule, int reduction,
+                             const cv::Mat& informative) {
   if (reduction < 1) return Fail("occupancy.reduction is {}; it must be at least 1", reduction);
   if (grid.count() < 1) return Fail("the grid has no cells; at least one is needed");
+  const auto [width, height] = camera.size();
+  if (!informative.empty() &&
+      (informative.type() != CV_8UC1 || informative.cols != width || informative.rows != height)) {
+    return Fail(
+        "the informative pixels are {} x {} px with {} channels of {} bytes; they must be {} x {} "
+        "with one of 1 byte",
+        informative.cols, informative.rows, informative.channels(), informative.elemSize1(), width,
+        height);
+  }
   CameraView view;
   view.mask_size = camera.size();
   view.size = ReducedSize(camera.size(), reduction);
@@ -63,6 +90,10 @@ Result<CameraView> BuildView(const Camera& camera, const GroundGrid& grid,
     if (box && SpeaksFor(reduced, foot_m, *box, rule)) {
       view.rectangles[static_cast<std::size_t>(cell)] = Rectangle(*box, view.size);
     }
+  }
+  if (!informative.empty()) {
+    view.informative = informative;
+    DropBlindRectangles(view);
   }
   return view;
 }

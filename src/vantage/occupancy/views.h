@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <opencv2/core/types.hpp>
+#include <opencv2/core/mat.hpp>
 #include <span>
 #include <vector>
 
@@ -30,6 +30,9 @@ struct CameraView {
   /// A person at cell i covers the pixels [x, x + width) x [y, y + height) of rectangles[i], inside
   /// the picture. Empty: the camera does not speak for the cell.
   std::vector<cv::Rect> rectangles;
+  /// CV_8UC1 of mask_size: 255 where a pixel says something of people on the ground, 0 where it
+  /// says nothing (a post that hides them). Empty: all pixels speak.
+  cv::Mat informative = {};
 };
 
 /// Size of a picture whose sides are divided by `reduction` (>= 1) and rounded, at least 1 px.
@@ -37,9 +40,11 @@ ImageSize ReducedSize(ImageSize size, int reduction);
 
 /// The view of `camera` (of the size that its masks have) over `grid`, in masks reduced by
 /// `reduction`. A pixel belongs to a person when its centre does; a rectangle without any pixel is
-/// not visible. Fails when reduction < 1 or the grid is empty.
+/// not visible, nor is one without any informative pixel (`informative` as in CameraView). Fails
+/// when reduction < 1, the grid is empty or `informative` has another type or size.
 Result<CameraView> BuildView(const Camera& camera, const GroundGrid& grid,
-                             const PersonOptions& person, Visibility rule, int reduction);
+                             const PersonOptions& person, Visibility rule, int reduction,
+                             const cv::Mat& informative = {});
 
 /// 1 for each cell that at least one camera speaks for. All views are of the same grid.
 std::vector<std::uint8_t> VisibleCells(std::span<const CameraView> views);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "vantage/base/test_support.h"
 
@@ -125,7 +126,40 @@ TEST(BuildView, CameraThatLooksAtTheSkySpeaksForNoCell) {
   EXPECT_THAT(VisibleCells(views), ::testing::Each(0));
 }
 
+TEST(BuildView, CellsWithoutAnInformativePixelAreNotVisible) {
+  const Camera camera = TestCamera();
+  const GroundGrid grid = Grid(4, 0.5);
+  // A post over all rows, and half a pixel more than it once the masks are reduced.
+  cv::Mat informative(240, 320, CV_8UC1, cv::Scalar(255));
+  const cv::Rect post(118, 0, 60, 240);
+  informative(post) = 0;
+  for (const int reduction : {1, 4}) {
+    const CameraView all = *BuildView(camera, grid, {}, Visibility::kCentre, reduction);
+    const CameraView view =
+        *BuildView(camera, grid, {}, Visibility::kCentre, reduction, informative);
+    EXPECT_TRUE(all.informative.empty());
+    EXPECT_EQ(cv::norm(view.informative, informative, cv::NORM_L1), 0);
+    int hidden = 0;
+    for (std::size_t i = 0; i < all.rectangles.size(); ++i) {
+      const cv::Rect& r = all.rectangles[i];
+      const cv::Rect full(r.x * reduction, r.y * reduction, r.width * reduction,
+                          r.height * reduction);
+      const bool is_hidden = !r.empty() && cv::countNonZero(informative(full)) == 0;
+      EXPECT_EQ(view.rectangles[i], is_hidden ? cv::Rect() : r);
+      hidden += is_hidden;
+    }
+    EXPECT_GT(hidden, 5);
+  }
+}
+
 TEST(BuildView, RefusesNonsense) {
+  const auto with = [](const cv::Mat& informative) {
+    return MessageOf(BuildView(TestCamera(), Grid(4, 1), {}, Visibility::kCentre, 1, informative));
+  };
+  EXPECT_THAT(with(cv::Mat::ones(240, 319, CV_8UC1)),
+              HasSubstr("are 319 x 240 px with 1 channels"));
+  EXPECT_THAT(with(cv::Mat::ones(240, 320, CV_8UC3)), HasSubstr("must be 320 x 240 with one of 1"));
+
   EXPECT_THAT(MessageOf(BuildView(TestCamera(), Grid(4, 1), {}, Visibility::kCentre, 0)),
               HasSubstr("occupancy.reduction is 0"));
   EXPECT_THAT(MessageOf(BuildView(TestCamera(), {}, {}, Visibility::kCentre, 1)),

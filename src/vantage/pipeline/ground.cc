@@ -33,8 +33,10 @@ Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options)
                 scene.file.string(), scene.grid.cell_m);
   }
   for (const SceneCamera& camera : scene.cameras) {
-    VANTAGE_ASSIGN_OR_RETURN(CameraView view, BuildView(camera.camera, ground.grid, scene.person,
-                                                        options.visibility, options.reduction));
+    const cv::Mat informative = camera.blind.empty() ? cv::Mat() : cv::Mat(camera.blind == 0);
+    VANTAGE_ASSIGN_OR_RETURN(CameraView view,
+                             BuildView(camera.camera, ground.grid, scene.person, options.visibility,
+                                       options.reduction, informative));
     ground.views.push_back(std::move(view));
   }
   ground.visible = VisibleCells(ground.views);

@@ -181,6 +181,23 @@ TEST_F(TwoCameras, AreaThatNoCameraSeesIsAnError) {
   EXPECT_THAT(MessageOf(LayOutGround(scene, {})), HasSubstr("use smaller cells"));
 }
 
+TEST_F(TwoCameras, BlindPixelsReachTheViews) {
+  Draw({Walk(1, {-3, -2}, {3, 2})});
+  Scene scene = Load();
+  const Ground whole = LayOutGround(scene, {}).value();
+  cv::Mat& blind = scene.cameras[0].blind;
+  blind = cv::Mat::zeros(240, 320, CV_8UC1);
+  blind.colRange(0, 160) = 255;
+  const Ground half = LayOutGround(scene, {}).value();
+  EXPECT_EQ(cv::norm(half.views[0].informative, 255 - blind, cv::NORM_L1), 0);
+  EXPECT_TRUE(half.views[1].informative.empty());
+  EXPECT_EQ(half.views[1].rectangles, whole.views[1].rectangles);
+  for (std::size_t i = 0; i < whole.visible.size(); ++i) {
+    const cv::Rect& r = whole.views[0].rectangles[i];
+    EXPECT_EQ(half.views[0].rectangles[i], r.x + r.width <= 160 ? cv::Rect() : r);
+  }
+}
+
 // --- Real data: floors that a regression would break; the figures are in README.md
 // ------------------
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "vantage/scene/blind_pixels.h"
 #include "vantage/scene/calibration.h"
 
 namespace vantage::internal {
@@ -228,7 +229,8 @@ bool IsPlainName(std::string_view name) {
 
 Result<SceneCamera> ReadCamera(const TableReader& table, const fs::path& folder,
                                std::vector<fs::path>& inputs) {
-  VANTAGE_RETURN_IF_ERROR(table.AllowOnly({"name", "source", "offset_frames", "calibration"}));
+  VANTAGE_RETURN_IF_ERROR(
+      table.AllowOnly({"name", "source", "offset_frames", "calibration", "blind"}));
   VANTAGE_ASSIGN_OR_RETURN(const std::string name, table.Text("name"));
   if (!IsPlainName(name)) {
     return table.FailAt("name",
@@ -246,7 +248,9 @@ Result<SceneCamera> ReadCamera(const TableReader& table, const fs::path& folder,
     VANTAGE_ASSIGN_OR_RETURN(source.offset_frames,
                              table.Integer("offset_frames", -kMaxOffset, kMaxOffset));
   }
-  return SceneCamera{name, std::move(source), camera};
+  VANTAGE_ASSIGN_OR_RETURN(const cv::Mat blind,
+                           ReadBlindPixels(table, folder, camera.size(), inputs));
+  return SceneCamera{name, std::move(source), camera, blind};
 }
 
 }  // namespace vantage::internal

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,9 @@ struct SceneCamera {
   std::string name;
   SourceSpec source;
   Camera camera;
+  /// CV_8UC1 of camera.size(): not 0 where the camera sees something in front of the people (a
+  /// post, a sign), so that the pixel says nothing of them. Empty: it sees people everywhere.
+  cv::Mat blind = {};
 };
 
 /// Grid and extension of the area (table [grid]).

@@ -186,6 +186,11 @@ tl::unexpected<Error> TableReader::FailAt(std::string_view key, std::string_view
               PathOf(key), message);
 }
 
+bool TableReader::HasText(std::string_view key) const {
+  const TomlValue* value = Find(key);
+  return value != nullptr && std::holds_alternative<std::string>(value->value);
+}
+
 Result<const TomlValue*> TableReader::Need(std::string_view key) const {
   const TomlValue* value = Find(key);
   if (value == nullptr) return FailAt(key, "is missing");

@@ -48,6 +48,7 @@ class TableReader {
   Status AllowOnly(const std::vector<std::string_view>& keys) const;
 
   bool Has(std::string_view key) const { return Find(key) != nullptr; }
+  bool HasText(std::string_view key) const;
   Result<double> Number(std::string_view key, const Range& range, std::string_view unit = "") const;
   Result<std::int64_t> Integer(std::string_view key, std::int64_t low, std::int64_t high) const;
   Result<bool> Flag(std::string_view key) const;
