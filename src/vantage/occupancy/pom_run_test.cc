@@ -108,17 +108,16 @@ TEST(RunPom, FailuresNameTheFileAndLeaveNothing) {
   EXPECT_FALSE(fs::exists(folder / "other"));
 }
 
-TEST(RunPom, AgreesWithTheAuthorsProgram) {
-  if (DataFolder().empty()) GTEST_SKIP() << "research data is absent";
-  const fs::path data = DataFolder() / "pom";
+/// Runs a configuration and compares every cell of its 30 frames with the authors' answers.
+void ExpectTheAuthorsAnswers(const fs::path& configuration) {
   const TemporaryFolder folder;
-  const Result<PomFile> file = ReadPomFile(data / "test.pom");
+  const Result<PomFile> file = ReadPomFile(configuration);
   ASSERT_EQ(MessageOf(file), "");
   ASSERT_EQ(MessageOf(RunPom(*file, folder.path(), 2, {})), "");
   double largest = 0;
   for (int frame = 160; frame < 190; ++frame) {
     const std::string name = fmt::format("proba-f{}.dat", frame);
-    const auto expected = ReadProbabilities(data / "expected" / name);
+    const auto expected = ReadProbabilities(DataFolder() / "pom/expected" / name);
     const auto q = ReadProbabilities(folder / ("out/" + name));
     ASSERT_EQ(expected.size(), 1332U);
     ASSERT_EQ(q.size(), expected.size());
@@ -127,7 +126,40 @@ TEST(RunPom, AgreesWithTheAuthorsProgram) {
       largest = std::max(largest, std::abs(q[i] - expected[i]));
     }
   }
-  RecordProperty("largest_difference", fmt::format("{}", largest));
+  ::testing::Test::RecordProperty("largest_difference", fmt::format("{}", largest));
+}
+
+TEST(RunPom, AgreesWithTheAuthorsProgram) {
+  if (DataFolder().empty()) GTEST_SKIP() << "research data is absent";
+  ExpectTheAuthorsAnswers(DataFolder() / "pom/test.pom");
+}
+
+/// The later form of the configuration, which gives every camera a number and a size of its own.
+TEST(RunPom, AgreesWithTheAuthorsProgramWhenCamerasHaveLines) {
+  if (DataFolder().empty()) GTEST_SKIP() << "research data is absent";
+  const TemporaryFolder folder;
+  const fs::path data = fs::absolute(DataFolder() / "pom");
+  // %c of the pictures' names is the camera's number.
+  for (int frame = 160; frame < 190; ++frame) {
+    for (int camera = 0; camera < 2; ++camera) {
+      fs::create_symlink(data / fmt::format("images/view-f{}-c{}.png", frame, camera),
+                         folder / fmt::format("view-f{}-c{}.png", frame, camera == 0 ? 4 : 2));
+    }
+  }
+  std::string text = *ReadTextFile(data / "test.pom", 1 << 20);
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    for (; at != std::string::npos; at = text.find(from, at + to.size())) {
+      text.replace(at, from.size(), to);
+    }
+  };
+  replace("RECTANGLE 1 ", "RECTANGLE 2 ");
+  replace("RECTANGLE 0 ", "RECTANGLE 4 ");
+  replace("ROOM 160 120 2 1332", "ROOM -1 -1 2 1332\nCAMERA 4 160 120\nCAMERA 2 160 120");
+  replace("images/view", (folder / "view").string());
+  ASSERT_TRUE(WriteTextFile(folder / "test.pom", text));
+  ExpectTheAuthorsAnswers(folder / "test.pom");
 }
 
 }  // namespace
