@@ -92,7 +92,9 @@ class Recorder final : public benchmark::ConsoleReporter {
 
 Result<nlohmann::ordered_json> Evaluate(const Comparison& comparison, const Recorder& recorder) {
   VANTAGE_ASSIGN_OR_RETURN(const double ours, recorder.Value(comparison.ours, comparison.unit));
-  VANTAGE_ASSIGN_OR_RETURN(const double peer, recorder.Value(comparison.peer, comparison.unit));
+  VANTAGE_ASSIGN_OR_RETURN(
+      const double peer,
+      comparison.limit ? *comparison.limit : recorder.Value(comparison.peer, comparison.unit));
   if (!(ours > 0 && peer > 0))
     return Fail("{} and {} must be above 0 {}", ours, peer, comparison.unit);
   const bool lower_is_better = comparison.lower_is_better || Nanoseconds(comparison.unit);

@@ -1,144 +1,213 @@
 // SPDX-FileCopyrightText: The Vantage authors
 // SPDX-License-Identifier: MIT
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
+#include <functional>
+#include <initializer_list>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/authors_pom.h"
+#include "bench/occupancy_cases.h"
 #include "bench/report.h"
+#include "vantage/base/parallel.h"
+#include "vantage/base/stopwatch.h"
 #include "vantage/occupancy/solver.h"
-#include "vantage/occupancy/views.h"
 
 namespace vantage::bench {
 namespace {
 
-/// A scene of the size of PETS 2009: 7 cameras of 768 x 576 around 27 x 27 m in cells of 0.5 m, 10
-/// people, masks reduced to 192 x 144. Every frame takes all 100 iterations.
-struct Setting {
-  GroundGrid grid{-13.5, -13.5, 0.5, 54, 54};
-  OccupancyOptions options;
-  std::vector<CameraView> views;
-  std::vector<cv::Mat> masks;  // at the size of the views
+using Maps = std::vector<std::vector<float>>;
+/// Writes the map of one frame.
+using SolveFrame = std::function<void(const OccupancyFrame&, std::span<float>)>;
 
-  Setting() {
-    constexpr int kCameras = 7;
-    constexpr int kPeople = 10;
-    options.tolerance = 0;
-    const PersonOptions person{.width_m = 0.8, .height_m = 1.85};
-    for (int c = 0; c < kCameras; ++c) {
-      const double angle = 2 * std::numbers::pi * c / kCameras;
-      const Camera camera = LookAtCentre(angle);
-      views.push_back(BuildView(camera, grid, person, Visibility::kCentre, 4).value());
-      CameraView& view = views.back();
-      view.mask_size = view.size;
-      cv::Mat mask = cv::Mat::zeros(view.size.height, view.size.width, CV_8UC1);
-      for (int i = 0; i < kPeople; ++i) {
-        const Eigen::Vector2d foot_m(10 * std::sin(1.7 * i), 10 * std::cos(2.9 * i));
-        mask(view.rectangles[static_cast<std::size_t>(*grid.CellAt(foot_m))]) = 255;
-      }
-      masks.push_back(mask);
-    }
+enum class Method { kAuthors, kExact, kFast };
+
+SolveFrame SolverOf(Method method, const OccupancyCase& problem) {
+  if (method == Method::kAuthors) {
+    return [authors = AuthorsPom(problem.views, problem.options)](
+               const OccupancyFrame& frame, std::span<float> q) { authors.Solve(frame.masks, q); };
   }
-
-  /// 6 m high, 25 m from the centre, looking at it.
-  static Camera LookAtCentre(double angle) {
-    const Eigen::Vector3d center_m(25 * std::cos(angle), 25 * std::sin(angle), 6);
-    CameraPose pose;
-    pose.rotation.row(2) = -center_m.normalized();
-    pose.rotation.row(0) = Eigen::Vector3d(-std::sin(angle), std::cos(angle), 0);
-    pose.rotation.row(1) =
-        pose.rotation.row(2).transpose().cross(pose.rotation.row(0).transpose()).transpose();
-    pose.translation_m = -pose.rotation * center_m;
-    const PinholeModel lens{.fx_px = 700, .fy_px = 700, .cx_px = 383.5, .cy_px = 287.5};
-    return Camera::Create({768, 576}, lens, pose).value();
-  }
-};
-
-/// The authors' scheme written plainly: products over the pixels of each rectangle, box sums by
-/// integral images, cells with an absence above `ignored` left out.
-std::vector<double> PlainSolve(const Setting& setting, double ignored) {
-  const OccupancyOptions& o = setting.options;
-  const std::size_t cells = setting.views.front().rectangles.size();
-  std::vector<double> n(cells, 1 - o.prior), score(cells);
-  std::vector<cv::Mat_<double>> b(setting.masks.size());
-  for (std::size_t c = 0; c < b.size(); ++c) setting.masks[c].convertTo(b[c], CV_64F, 1.0 / 255);
-  const double logit_prior = std::log(o.prior / (1 - o.prior));
-  cv::Mat_<double> m, mb, sum_m, sum_mb;
-  const auto box = [](const cv::Mat_<double>& sum, const cv::Rect& r) {
-    return sum(r.y + r.height, r.x + r.width) - sum(r.y, r.x + r.width) - sum(r.y + r.height, r.x) +
-           sum(r.y, r.x);
+  const auto& views = method == Method::kExact ? problem.views : problem.fast_views;
+  return [solver = OccupancySolver::Create(views, problem.options).value()](
+             const OccupancyFrame& frame, std::span<float> q) {
+    benchmark::DoNotOptimize(solver.Solve(frame.masks, q).value());
   };
-  for (int iteration = 0; iteration < o.max_iterations; ++iteration) {
-    score.assign(cells, 0);
-    for (std::size_t c = 0; c < setting.views.size(); ++c) {
-      const CameraView& view = setting.views[c];
-      m.create(view.size.height, view.size.width);
-      m.setTo(1.0);
-      for (std::size_t i = 0; i < cells; ++i) {
-        const cv::Rect& r = view.rectangles[i];
-        if (r.empty() || n[i] > ignored) continue;
-        for (int y = r.y; y < r.y + r.height; ++y) {
-          double* const row = m[y];
-          for (int x = r.x; x < r.x + r.width; ++x) row[x] *= n[i];
-        }
-      }
-      cv::multiply(m, b[c], mb);
-      cv::integral(m, sum_m, CV_64F);
-      cv::integral(mb, sum_mb, CV_64F);
-      const cv::Rect picture(0, 0, m.cols, m.rows);
-      const double s = picture.area() * (1 + o.noise) - box(sum_m, picture);
-      const double d = s + 2 * box(sum_mb, picture) - cv::sum(b[c])[0];
-      for (std::size_t i = 0; i < cells; ++i) {
-        const cv::Rect& r = view.rectangles[i];
-        if (r.empty()) continue;
-        const double l = 1 - 1 / n[i], a = box(sum_m, r), v = a - 2 * box(sum_mb, r);
-        const double present = (d + v) / (s + a), absent = (d + l * v) / (s + l * a);
-        score[i] += (absent * absent - present * present) / (2 * o.variance);
-      }
-    }
-    for (std::size_t i = 0; i < cells; ++i) {
-      n[i] = o.smoothing * n[i] + (1 - o.smoothing) / (1 + std::exp(logit_prior + score[i]));
+}
+
+Maps RoomFor(const OccupancyCase& problem) {
+  return Maps(problem.frames.size(), std::vector<float>(problem.views.front().rectangles.size()));
+}
+
+/// Every frame, `threads` of them at a time.
+void SolveAll(const OccupancyCase& problem, const SolveFrame& solve, int threads, Maps& maps) {
+  ParallelFor(threads, static_cast<std::int64_t>(problem.frames.size()), [&](std::int64_t i) {
+    const auto frame = static_cast<std::size_t>(i);
+    solve(problem.frames[frame], maps[frame]);
+  });
+}
+
+std::map<const OccupancyCase*, Maps>& KnownAuthorsMaps() {
+  static std::map<const OccupancyCase*, Maps> known;
+  return known;
+}
+
+/// What the authors' scheme answers; computed where it has not been measured yet.
+const Maps& AuthorsMaps(const OccupancyCase& problem) {
+  const auto [entry, is_new] = KnownAuthorsMaps().try_emplace(&problem);
+  if (is_new) {
+    entry->second = RoomFor(problem);
+    SolveAll(problem, SolverOf(Method::kAuthors, problem), HardwareThreads(), entry->second);
+  }
+  return entry->second;
+}
+
+/// How far the maps are from the authors': the largest difference, and the cells above one half in
+/// one of the two only.
+void CountDifferences(const Maps& maps, const Maps& authors, benchmark::State& state) {
+  double largest = 0, cells = 0;
+  for (std::size_t f = 0; f < maps.size(); ++f) {
+    for (std::size_t i = 0; i < maps[f].size(); ++i) {
+      const double ours = maps[f][i], theirs = authors[f][i];
+      const double difference = std::abs(ours - theirs);
+      largest = std::max(largest, std::isnan(difference) ? HUGE_VAL : difference);
+      if ((ours > 0.5) != (theirs > 0.5)) ++cells;
     }
   }
-  return n;
+  state.counters["max_difference"] = largest;
+  state.counters["cells_differ"] = cells;
 }
 
-void BM_OccupancyPets7(benchmark::State& state) {
-  const Setting setting;
-  const OccupancySolver solver = OccupancySolver::Create(setting.views, setting.options).value();
-  std::vector<float> q(solver.cell_count());
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(solver.Solve(setting.masks, q));
-    benchmark::ClobberMemory();
+/// Times all frames of a case again and again; the seconds for one frame are counted as such, and
+/// as a share of the time between two frames at 20 a second.
+double TimePerFrame(const OccupancyCase& problem, const SolveFrame& solve, int threads, Maps& maps,
+                    benchmark::State& state) {
+  const Stopwatch watch;
+  for (auto _ : state) SolveAll(problem, solve, threads, maps);
+  const double secs =
+      watch.Seconds() / static_cast<double>(state.iterations()) / problem.frames.size();
+  state.counters["ms/frame"] = 1e3 * secs;
+  state.counters["core_share"] = 20 * secs;
+  return secs;
+}
+
+void BM_Occupancy(benchmark::State& state, Method method, const OccupancyCase& (*case_of)()) {
+  const OccupancyCase& problem = case_of();
+  if (!problem.missing.empty()) return state.SkipWithError(problem.missing.c_str());
+  const SolveFrame solve = SolverOf(method, problem);
+  Maps maps = RoomFor(problem);
+  TimePerFrame(problem, solve, static_cast<int>(state.range(0)), maps, state);
+  if (problem.has_truth) state.counters["moda"] = Moda(problem, maps);
+  if (method == Method::kAuthors) {
+    KnownAuthorsMaps()[&problem] = std::move(maps);
+    return;
+  }
+  CountDifferences(maps, AuthorsMaps(problem), state);
+  // The two must solve the same problem, or the comparison says nothing.
+  if (method == Method::kExact && state.counters["max_difference"] > 1e-4) {
+    state.SkipWithError("the exact mode and the authors' scheme disagree");
   }
 }
-BENCHMARK(BM_OccupancyPets7)->Unit(benchmark::kMillisecond);
 
-/// The argument is `ignored` in percent: 99 is what the authors use for speed, 100 gives our
-/// answer.
-void BM_OccupancyPets7Plain(benchmark::State& state) {
-  const Setting setting;
-  const double ignored = static_cast<double>(state.range(0)) / 100;
-  for (auto _ : state) benchmark::DoNotOptimize(PlainSolve(setting, ignored));
+void OnOneAndTwoThreads(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 }
-BENCHMARK(BM_OccupancyPets7Plain)->Arg(99)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Occupancy, pom.authors, Method::kAuthors, PomCase)->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, pom.exact, Method::kExact, PomCase)->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, pom.fast, Method::kFast, PomCase)->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, wildtrack.authors, Method::kAuthors, WildtrackCase)
+    ->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, wildtrack.exact, Method::kExact, WildtrackCase)
+    ->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, wildtrack.fast, Method::kFast, WildtrackCase)
+    ->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, arena8.authors, Method::kAuthors, ArenaCase)
+    ->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, arena8.exact, Method::kExact, ArenaCase)->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, arena8.fast, Method::kFast, ArenaCase)->Apply(OnOneAndTwoThreads);
 
-const bool kCompared = Compare({.name = "occupancy.pets7.exact.1t.vs_authors",
-                                .ours = "BM_OccupancyPets7",
-                                .peer = "BM_OccupancyPets7Plain/99",
-                                .peer_name = "authors' scheme, ignored 0.99",
-                                .unit = "ms",
-                                .threads = 1}) &&
-                       Compare({.name = "occupancy.pets7.exact.1t.vs_authors_exact",
-                                .ours = "BM_OccupancyPets7",
-                                .peer = "BM_OccupancyPets7Plain/100",
-                                .peer_name = "authors' scheme, ignored 1",
-                                .unit = "ms",
-                                .threads = 1});
+/// The fast mode in the hall; counts the time for one frame divided by `size`.
+void TimeArena(const ArenaOptions& options, double size, benchmark::State& state) {
+  const OccupancyCase problem = MakeArena(options);
+  Maps maps = RoomFor(problem);
+  const double secs = TimePerFrame(problem, SolverOf(Method::kFast, problem), 1, maps, state);
+  state.counters["us/unit"] = 1e6 * secs / size;
+  state.counters["moda"] = Moda(problem, maps);
+}
+
+void BM_ArenaCameras(benchmark::State& state) {
+  const auto cameras = static_cast<int>(state.range(0));
+  TimeArena({.cameras = cameras}, cameras, state);
+}
+BENCHMARK(BM_ArenaCameras)->Arg(2)->Arg(4)->Arg(8)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+/// The argument is the side of a cell in centimetres.
+void BM_ArenaCells(benchmark::State& state) {
+  const double cell_m = static_cast<double>(state.range(0)) / 100;
+  TimeArena({.cell_m = cell_m}, 1 / (cell_m * cell_m), state);
+}
+BENCHMARK(BM_ArenaCells)->Arg(100)->Arg(70)->Arg(50)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+/// The argument is the width of the pictures.
+void BM_ArenaPixels(benchmark::State& state) {
+  const auto width = static_cast<int>(state.range(0));
+  const ImageSize size{width, width * 4 / 5};
+  TimeArena({.size = size}, 1e-3 * size.width * size.height, state);
+}
+BENCHMARK(BM_ArenaPixels)
+    ->Arg(480)
+    ->Arg(960)
+    ->Arg(1920)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+bool CompareCase(const std::string& name) {
+  for (const int threads : {1, 2}) {
+    for (const std::string method : {"exact", "fast"}) {
+      Compare({.name = fmt::format("occupancy.{}.{}.{}t.vs_authors", name, method, threads),
+               .ours = fmt::format("BM_Occupancy/{}.{}/{}", name, method, threads),
+               .peer = fmt::format("BM_Occupancy/{}.authors/{}", name, threads),
+               .peer_name = "the authors' scheme, ignored 0.99",
+               .unit = "ms/frame",
+               .threads = threads,
+               .lower_is_better = true});
+    }
+  }
+  return true;
+}
+
+/// Linear growth leaves the time of one unit of size as it is at the smallest.
+bool CompareSizes(const std::string& what, const std::string& benchmark, int smallest,
+                  std::initializer_list<int> larger) {
+  for (const int size : larger) {
+    Compare({.name = fmt::format("occupancy.arena8.fast.{}.{}_vs_{}", what, size, smallest),
+             .ours = fmt::format("{}/{}", benchmark, size),
+             .peer = fmt::format("{}/{}", benchmark, smallest),
+             .peer_name = "the smallest; 1 is linear growth",
+             .unit = "us/unit",
+             .threads = 1,
+             .lower_is_better = true});
+  }
+  return true;
+}
+
+const bool kCompared = CompareCase("pom") && CompareCase("wildtrack") && CompareCase("arena8") &&
+                       Compare({.name = "occupancy.arena8.core_share_at_20fps",
+                                .ours = "BM_Occupancy/arena8.fast/1",
+                                .peer_name = "the tenth that it may take",
+                                .limit = 0.1,
+                                .unit = "core_share",
+                                .threads = 1,
+                                .lower_is_better = true}) &&
+                       CompareSizes("cameras", "BM_ArenaCameras", 2, {4, 8}) &&
+                       CompareSizes("cell_cm", "BM_ArenaCells", 100, {70, 50}) &&
+                       CompareSizes("width_px", "BM_ArenaPixels", 480, {960, 1920});
 
 }  // namespace
 }  // namespace vantage::bench

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 
 /// How a benchmark file says what its figures are compared with. Ours and the peer are both cases
@@ -32,8 +33,10 @@ struct Comparison {
   /// Cases: function name as given to BENCHMARK, then "/argument" for each argument; modifiers such
   /// as "/real_time" are left away.
   std::string ours;
-  std::string peer;
+  std::string peer = {};
   std::string peer_name;
+  /// Instead of a peer: what ours must keep within.
+  std::optional<double> limit = std::nullopt;
   /// "ns", "us", "ms" or "s": real time of one iteration. Anything else: the counter of this name.
   std::string unit;
   int threads = 1;
