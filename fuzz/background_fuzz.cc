@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,6 +55,13 @@ class RandomOptions final : public OptionVisitor {
       return;
     }
     Change(value, range, 1e-6);
+  }
+  void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view,
+                const Range& range) override {
+    double number = value.value_or(1);
+    Number(info, number, range);
+    value.reset();
+    if (broken || random_.Chance(0.7)) value = number;
   }
   bool broken = false;
 

@@ -38,6 +38,10 @@ class FlagAdder final : public OptionVisitor {
   void Number(const OptionInfo& info, double& value, const Range& range) override {
     AddNumber<double>(info, fmt::to_string(value), range);
   }
+  void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
+                const Range& range) override {
+    AddNumber<double>(info, value ? fmt::to_string(*value) : std::string(word), range, word);
+  }
 
  protected:
   void ChoiceIndex(const OptionInfo& info, int& index,
@@ -49,17 +53,24 @@ class FlagAdder final : public OptionVisitor {
   }
 
  private:
+  /// `word` is what may stand in place of the number; empty: nothing may.
   template <class T>
-  void AddNumber(const OptionInfo& info, const std::string& standard, const Range& range) {
-    CLI::Option* option = AddValue(info, "NUMBER");
-    option->check([range](const std::string& text) -> std::string {
+  void AddNumber(const OptionInfo& info, const std::string& standard, const Range& range,
+                 std::string_view word = "") {
+    CLI::Option* option = AddValue(info, word.empty() ? "NUMBER" : fmt::format("NUMBER|{}", word));
+    const std::string rule =
+        word.empty() ? range.Text() : fmt::format("{}, or {}", range.Text(), word);
+    option->check([range, rule, word = std::string(word)](const std::string& text) -> std::string {
+      if (!word.empty() && text == word) return "";
       T number{};
-      if (!CLI::detail::lexical_cast(text, number))
-        return fmt::format("'{}' is not a number", text);
+      if (!CLI::detail::lexical_cast(text, number)) {
+        return word.empty() ? fmt::format("'{}' is not a number", text)
+                            : fmt::format("'{}' is neither a number nor {}", text, word);
+      }
       if (range.Contains(static_cast<double>(number))) return "";
-      return fmt::format("is {}; it must be {}", text, range.Text());
+      return fmt::format("is {}; it must be {}", text, rule);
     });
-    Keep(info, option, Help(info, range.Text()), standard);
+    Keep(info, option, Help(info, rule), standard);
   }
 
   /// An option of one value that CLI11 only keeps: FlagSetter reads it.
@@ -87,6 +98,18 @@ class FlagSetter final : public OptionVisitor {
   void Flag(const OptionInfo& info, bool& value) override { Set(info, value); }
   void Number(const OptionInfo& info, int& value, const Range&) override { Set(info, value); }
   void Number(const OptionInfo& info, double& value, const Range&) override { Set(info, value); }
+  void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
+                const Range&) override {
+    std::string text;
+    Set(info, text);
+    if (text == word) {
+      value.reset();
+    } else if (!text.empty()) {
+      double number = 0;
+      Set(info, number);
+      value = number;
+    }
+  }
 
  protected:
   void ChoiceIndex(const OptionInfo& info, int& index,

@@ -55,6 +55,14 @@ void OptionValidator::Number(const OptionInfo& info, double& value, const Range&
   }
 }
 
+void OptionValidator::NumberOr(const OptionInfo& info, std::optional<double>& value,
+                               std::string_view word, const Range& range) {
+  if (status && value && !range.Contains(*value)) {
+    status = Fail("{} is {}; it must be {}, or \"{}\"", Field(prefix_, info.name), *value,
+                  RuleText(range, info.unit), word);
+  }
+}
+
 void OptionValidator::ChoiceIndex(const OptionInfo& info, int& index,
                                   const std::vector<std::string_view>& names) {
   if (status && index < 0) {
@@ -71,6 +79,13 @@ void OptionRecorder::Number(const OptionInfo& info, int& value, const Range&) {
 }
 void OptionRecorder::Number(const OptionInfo& info, double& value, const Range&) {
   json_[std::string(info.name)] = value;
+}
+void OptionRecorder::NumberOr(const OptionInfo& info, std::optional<double>& value,
+                              std::string_view word, const Range&) {
+  if (value)
+    json_[std::string(info.name)] = *value;
+  else
+    json_[std::string(info.name)] = word;
 }
 void OptionRecorder::ChoiceIndex(const OptionInfo& info, int& index,
                                  const std::vector<std::string_view>& names) {

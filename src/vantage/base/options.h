@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <limits>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,7 +19,8 @@
 ///
 ///   void VisitOptions(MixtureOptions& options, OptionVisitor& visitor);
 ///
-/// and calls `visitor.Number(...)`, `visitor.Choice(...)` or `visitor.Flag(...)` once per field.
+/// and calls `visitor.Number(...)`, `visitor.NumberOr(...)`, `visitor.Choice(...)` or
+/// `visitor.Flag(...)` once per field.
 
 namespace vantage {
 
@@ -59,6 +61,10 @@ class OptionVisitor {
   virtual void Flag(const OptionInfo& info, bool& value) = 0;
   virtual void Number(const OptionInfo& info, int& value, const Range& range) = 0;
   virtual void Number(const OptionInfo& info, double& value, const Range& range) = 0;
+  /// A number that may also be said by a word, which stands for nullopt: "auto" for what is found
+  /// from the data. The word must not be a number. Every value that is a number keeps to `range`.
+  virtual void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
+                        const Range& range) = 0;
 
   /// An enum by the names that users type.
   template <class Enum>
@@ -88,6 +94,8 @@ class OptionValidator final : public OptionVisitor {
   void Flag(const OptionInfo&, bool&) override {}
   void Number(const OptionInfo& info, int& value, const Range& range) override;
   void Number(const OptionInfo& info, double& value, const Range& range) override;
+  void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
+                const Range& range) override;
   Status status;
 
  protected:
@@ -104,6 +112,8 @@ class OptionRecorder final : public OptionVisitor {
   void Flag(const OptionInfo& info, bool& value) override;
   void Number(const OptionInfo& info, int& value, const Range& range) override;
   void Number(const OptionInfo& info, double& value, const Range& range) override;
+  void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
+                const Range& range) override;
 
  protected:
   void ChoiceIndex(const OptionInfo& info, int& index,

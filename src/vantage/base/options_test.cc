@@ -20,6 +20,7 @@ enum class Mode { kFast, kExact };
 struct ExampleOptions {
   int count = 3;
   double side_m = 0.5;
+  std::optional<double> margin_m;
   bool on = true;
   Mode mode = Mode::kExact;
 };
@@ -27,6 +28,7 @@ struct ExampleOptions {
 void VisitOptions(ExampleOptions& o, OptionVisitor& v) {
   v.Number({"count", "", "how many"}, o.count, Range::Between(1, 8));
   v.Number({"side", "m", "side of a cell"}, o.side_m, Range::Above(0));
+  v.NumberOr({"margin", "m", "how far"}, o.margin_m, "auto", Range::AtLeast(0));
   v.Flag({"on", "", "whether"}, o.on);
   v.Choice({"mode", "", "which"}, o.mode, {{"fast", Mode::kFast}, {"exact", Mode::kExact}});
 }
@@ -44,6 +46,14 @@ TEST(Options, MessagesNameFieldValueAndRule) {
   EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")),
             "stage.side is nan; it must be above 0 m");
   options.side_m = 1;
+  options.margin_m = -1;
+  EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")),
+            "stage.margin is -1; it must be at least 0 m, or \"auto\"");
+  options.margin_m = std::nan("");
+  EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")),
+            "stage.margin is nan; it must be at least 0 m, or \"auto\"");
+  options.margin_m = 0;
+  EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")), "");
   options.mode = static_cast<Mode>(7);
   EXPECT_EQ(MessageOf(ValidateOptions(options, "")),
             "mode has no valid value; it must be one of fast, exact");
@@ -52,7 +62,9 @@ TEST(Options, MessagesNameFieldValueAndRule) {
 TEST(Options, RecordHoldsEveryField) {
   nlohmann::ordered_json json;
   RecordOptions(ExampleOptions{}, json);
-  EXPECT_EQ(json.dump(), R"({"count":3,"side":0.5,"on":true,"mode":"exact"})");
+  EXPECT_EQ(json.dump(), R"({"count":3,"side":0.5,"margin":"auto","on":true,"mode":"exact"})");
+  RecordOptions(ExampleOptions{.margin_m = 2.5}, json);
+  EXPECT_EQ(json.dump(), R"({"count":3,"side":0.5,"margin":2.5,"on":true,"mode":"exact"})");
 }
 
 TEST(ParallelFor, VisitsEveryIndexOnceWhateverTheThreadCount) {

@@ -108,6 +108,10 @@ class OptionBinder final : public OptionVisitor {
   void Number(const OptionInfo& info, double& value, const Range& range) override {
     Set(info, value, [&] { return table_.Number(info.name, range, info.unit); });
   }
+  void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
+                const Range& range) override {
+    Set(info, value, [&] { return table_.NumberOr(info.name, word, range, info.unit); });
+  }
 
   std::vector<std::string_view> names;
   Status status;
@@ -219,6 +223,17 @@ Result<double> TableReader::Number(std::string_view key, const Range& range,
                                    says_number ? "" : "a number, ", rule));
   }
   return *number;
+}
+
+Result<std::optional<double>> TableReader::NumberOr(std::string_view key, std::string_view word,
+                                                    const Range& range,
+                                                    std::string_view unit) const {
+  VANTAGE_ASSIGN_OR_RETURN(const TomlValue* const value, Need(key));
+  const auto* text = std::get_if<std::string>(&value->value);
+  if (text != nullptr && *text == word) return std::nullopt;
+  const Result<double> number = Number(key, range, unit);
+  if (number) return *number;
+  return Fail("{}, or \"{}\"", number.error().message, word);
 }
 
 Result<std::int64_t> TableReader::Integer(std::string_view key, std::int64_t low,

@@ -50,6 +50,9 @@ class TableReader {
   bool Has(std::string_view key) const { return Find(key) != nullptr; }
   bool HasText(std::string_view key) const;
   Result<double> Number(std::string_view key, const Range& range, std::string_view unit = "") const;
+  /// A number within `range`, or the text `word`, which gives nullopt.
+  Result<std::optional<double>> NumberOr(std::string_view key, std::string_view word,
+                                         const Range& range, std::string_view unit = "") const;
   Result<std::int64_t> Integer(std::string_view key, std::int64_t low, std::int64_t high) const;
   Result<bool> Flag(std::string_view key) const;
   /// Not empty.

@@ -18,12 +18,14 @@ struct Options {
   bool flag = false;
   int count = 3;
   double size_m = 0.5;
+  std::optional<double> margin_m = 1.0;
   enum class Kind { kRound, kFlat } kind = Kind::kRound;
 };
 void VisitOptions(Options& o, OptionVisitor& v) {
   v.Flag({"flag", "", "a flag"}, o.flag);
   v.Number({"count", "", "a count"}, o.count, Range::Between(1, 8));
   v.Number({"size", "m", "a length"}, o.size_m, Range::AboveUpTo(0, 10));
+  v.NumberOr({"margin", "m", "a margin"}, o.margin_m, "auto", Range::AtLeast(0));
   v.Choice({"kind", "", "a kind"}, o.kind,
            {{"round", Options::Kind::kRound}, {"flat", Options::Kind::kFlat}});
 }
@@ -76,6 +78,25 @@ TEST_F(TomlTableTest, BindTakesWholeNumbersForNumbers) {
   EXPECT_EQ(options.size_m, 2.0);
 }
 
+TEST_F(TomlTableTest, BindTakesTheWordOfANumberThatHasOne) {
+  const auto margin = [&](const std::string& text) {
+    Options options;
+    const TableReader root = Parse("[stage]\n" + text);
+    EXPECT_TRUE(
+        root.Table("stage").value().Bind([&](OptionVisitor& v) { VisitOptions(options, v); }));
+    return options.margin_m;
+  };
+  EXPECT_EQ(margin("margin = \"auto\""), std::nullopt);
+  EXPECT_EQ(margin("margin = 2"), 2.0);
+  EXPECT_EQ(margin(""), 1.0);
+  EXPECT_EQ(BindError("margin = -1"),
+            "s.toml:2: stage.margin: is -1; it must be at least 0 m, or \"auto\"");
+  EXPECT_EQ(BindError("margin = \"Auto\""),
+            "s.toml:2: stage.margin: is \"Auto\"; it must be a number, at least 0 m, or \"auto\"");
+  EXPECT_THAT(BindError("margin = nan"), HasSubstr("is nan; it must be at least 0 m"));
+  EXPECT_THAT(BindError("margin = [2]"), HasSubstr("is an array of 1; it must be a number"));
+}
+
 TEST_F(TomlTableTest, BindErrorsNamePlaceAndRule) {
   EXPECT_EQ(BindError("count = 9"), "s.toml:2: stage.count: is 9; it must be between 1 and 8");
   EXPECT_THAT(BindError("\ncount = 1.5"),
@@ -94,9 +115,9 @@ TEST_F(TomlTableTest, BindErrorsNamePlaceAndRule) {
             "s.toml:2: stage.kind: is \"square\"; it must be one of round, flat");
   EXPECT_EQ(BindError("cuont = 3"),
             "s.toml:2: stage.cuont: unknown key, did you mean count?; allowed are flag, count, "
-            "size, kind");
+            "size, margin, kind");
   EXPECT_EQ(BindError("elephant = 3"),
-            "s.toml:2: stage.elephant: unknown key; allowed are flag, count, size, kind");
+            "s.toml:2: stage.elephant: unknown key; allowed are flag, count, size, margin, kind");
 }
 
 TEST_F(TomlTableTest, TypedAccess) {
