@@ -38,7 +38,7 @@ struct PomFile {
   std::vector<CameraView> views;
   std::string input_format;
   std::string result_format;
-  OccupancyOptions options;
+  OccupancyOptions options = OriginalPomOptions();
   std::vector<Frames> frames;
 
   /// File names have %c and %f replaced by camera and frame, without padding, and are relative to

@@ -7,40 +7,16 @@
 #include <vector>
 
 #include "vantage/base/ids.h"
-#include "vantage/base/options.h"
 #include "vantage/base/result.h"
+#include "vantage/occupancy/occupancy_options.h"
 #include "vantage/occupancy/views.h"
 
 namespace vantage {
 
-/// Options of the occupancy maps (table [occupancy]); the defaults are those of the original POM
-/// program.
-struct OccupancyOptions {
-  /// Probability that a cell is occupied before anything is seen, 0 < prior < 1.
-  double prior = 0.01;
-  /// Variance of the ratio between the pixels that a map explains wrongly and those that it covers,
-  /// 1e-7 <= variance <= 10. Smaller: smaller people count, and noise too.
-  double variance = 0.01;
-  /// Share of the old value that a cell keeps in each iteration, 0 <= smoothing < 1.
-  double smoothing = 0.8;
-  /// Share of the picture that counts as covered whatever the map says, 1e-6 <= noise <= 1.
-  double noise = 0.01;
-  /// Iterations at most, 1 <= max_iterations <= 100000.
-  int max_iterations = 100;
-  /// An iteration that changes no cell by this much is stable, 0 <= tolerance <= 1.
-  double tolerance = 1e-4;
-  /// Iterations in a row that must be stable before the end, 1 <= stable_iterations <= 1000.
-  int stable_iterations = 5;
-  /// Cells whose probability of absence is above this do not enter the expected picture,
-  /// 0.9 <= ignored <= 1. 0.99 is what the original program uses for speed; 1 leaves out none.
-  double ignored = 1.0;
-  /// Which cells a camera speaks for.
-  Visibility visibility = Visibility::kCentre;
-  /// The sides of a mask are divided by this before use (exact area averages),
-  /// 1 <= reduction <= 64.
-  int reduction = 1;
-};
-void VisitOptions(OccupancyOptions& options, OptionVisitor& visitor);
+namespace internal {
+struct CameraCells;
+struct Foreground;
+}  // namespace internal
 
 /// How the solution of one frame went.
 struct SolveReport {
@@ -49,56 +25,73 @@ struct SolveReport {
   double last_change = 0;
   /// False when max_iterations came before stable_iterations in a row were stable.
   bool converged = false;
+  /// Cameras without a picture, which were left out of all sums.
+  int cameras_left_out = 0;
+  /// Cells that were iterated; the others keep at most their prior.
+  std::int64_t cells_iterated = 0;
 };
 
-/// Probabilistic occupancy map: the probability of presence at every cell given the masks of all
-/// cameras at one instant. Fixed-point iteration for the product law closest to the posterior
-/// (F. Fleuret et al., "Multicamera People Tracking with a Probabilistic Occupancy Map", PAMI 2008;
-/// algorithms.md section 3), every frame by itself. Immutable: frames may be solved in parallel.
+/// Probabilistic occupancy map: the probability of presence q_i at every cell given the masks of
+/// all cameras at one instant (F. Fleuret et al., "Multicamera People Tracking with a Probabilistic
+/// Occupancy Map", PAMI 2008; algorithms.md section 3). With n = 1 - q the absence, B_c the mask of
+/// camera c and M_c(x), the product of n_i over the rectangles A_i that contain pixel x, the
+/// probability that nobody covers x, it is a fixed point of
+///
+///     n_i = 1 / (1 + exp(logit(prior_i) + sum over c of w_ic r_ic))
+///
+/// w_ic is what the camera's word counts (CameraView::weights). Sums are over informative pixels.
+///
+/// Evidence "picture" is the original program's: r_ic compares how large a share of what the map
+/// covers it explains wrongly, over the whole picture, with and without a person at i (formulas in
+/// algorithms.md). One person is then worth the less the more people there are.
+///
+/// Evidence "person" counts pixels in persons. The energy of camera c given the occupancy X is
+///
+///     E_c = worth sum over x of [B (1 - A) + background_cost (1 - B) A] / (pixels of a person at
+///     x)
+///
+/// with A(x) = 1 where somebody covers x. It is linear in A, so that its mean under the product law
+/// needs no approximation (the article puts the mean of A into a ratio), and the fixed point is
+///
+///     r_ic = worth / |A_i| sum over A_i of (M_c / n_i) (B_c - background_cost (1 - B_c)):
+///
+/// the share of the person that only a person at i explains, less the share that nothing bears out.
+/// It depends neither on resolution or distance, nor on how many people there are elsewhere.
+///
+/// Every frame by itself, unless begun at an earlier map. Immutable: frames may be solved in
+/// parallel.
 class OccupancySolver {
  public:
-  /// Fails when there is no view, the views are not of the same number of cells (1 to 4 million), a
-  /// rectangle leaves its picture, or an option breaks its rule. The solver itself uses neither
-  /// `visibility` nor `reduction`: BuildView does.
+  /// `priors`: none, or for each cell in place of options.prior, strictly between 0 and 1. Fails
+  /// when there is no view, the views or priors are not of the same number of cells (1 to
+  /// 4 million), a rectangle leaves its picture, or an option breaks its rule. The solver itself
+  /// uses neither `visibility` nor `reduction` (BuildView does) nor `warm_start` (see Solve).
   static Result<OccupancySolver> Create(const std::vector<CameraView>& views,
-                                        const OccupancyOptions& options);
+                                        const OccupancyOptions& options,
+                                        std::vector<double> priors = {});
+
+  OccupancySolver(OccupancySolver&&) noexcept;
+  OccupancySolver& operator=(OccupancySolver&&) noexcept;
+  ~OccupancySolver();
 
   /// Writes the probability of presence of every cell into `q` (cell_count() values). `masks` has
   /// one mask for each view, CV_8UC1 of the view's mask_size, 0 background to 255 foreground;
   /// values between are soft evidence. An empty cv::Mat: that camera has no picture now and is left
-  /// out. Fails, naming the camera by its index, when a mask has another type or size. Thread-safe.
-  Result<SolveReport> Solve(std::span<const cv::Mat> masks, std::span<float> q) const;
+  /// out. `previous`: none, or a map to begin at (the iteration has several fixed points and finds
+  /// one near its start). Fails, naming the camera by its index, when a mask has another type or
+  /// size. Thread-safe.
+  Result<SolveReport> Solve(std::span<const cv::Mat> masks, std::span<float> q,
+                            std::span<const float> previous = {}) const;
 
-  std::size_t cell_count() const { return cell_count_; }
-  std::size_t camera_count() const { return cameras_.size(); }
+  std::size_t cell_count() const { return priors_.size(); }
+  std::size_t camera_count() const;
 
  private:
-  struct Workspace;
-  /// A visible cell and where the corners of its rectangle are in an array of
-  /// (width + 1) x (height + 1) values, one for each corner of a pixel.
-  struct VisibleCell {
-    CellIndex cell;
-    int top_left, top_right, bottom_left, bottom_right;
-  };
-  /// A mask as float in [0, 1] at the view's size, and its sum; empty where a camera has none.
-  struct Evidence {
-    cv::Mat b;
-    double sum = 0;
-  };
-  struct CameraCells {
-    ImageSize mask_size;
-    ImageSize size;
-    std::vector<VisibleCell> cells;
-  };
-
-  OccupancySolver() = default;
-  Result<std::vector<Evidence>> Prepare(std::span<const cv::Mat> masks) const;
-  static void BuildSums(const CameraCells& camera, const cv::Mat& b_image, Workspace& work);
-  void AddLogRatios(const CameraCells& camera, const Evidence& evidence, Workspace& work) const;
+  OccupancySolver();
 
   OccupancyOptions options_;
-  std::size_t cell_count_ = 0;
-  std::vector<CameraCells> cameras_;
+  std::vector<double> priors_;
+  std::vector<internal::CameraCells> cameras_;
 };
 
 }  // namespace vantage

@@ -23,6 +23,8 @@ bool SpeaksFor(const Camera& camera, const Vector2d& foot_m, const PixelBox& box
              box.max_y <= camera.size().height - 0.5;
     case Visibility::kCentre:
       return camera.InPicture({(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2});
+    case Visibility::kContinuous:
+      return true;  // as far as any pixel is in the picture
   }
   return false;
 }
@@ -39,6 +41,14 @@ cv::Rect Rectangle(const PixelBox& box, ImageSize size) {
   const auto [top, bottom] = PixelRange(box.min_y, box.max_y, size.height);
   const cv::Rect rectangle(left, top, right - left, bottom - top);
   return rectangle.empty() ? cv::Rect() : rectangle;
+}
+
+/// Share of a rectangle that is inside a picture.
+float VisibleShare(const PixelBox& box, ImageSize size) {
+  const double width = std::min(box.max_x, size.width - 0.5) - std::max(box.min_x, -0.5);
+  const double height = std::min(box.max_y, size.height - 0.5) - std::max(box.min_y, -0.5);
+  const double area = std::max(width, 0.0) * std::max(height, 0.0);
+  return static_cast<float>(std::min(area / (box.width() * box.height()), 1.0));
 }
 
 /// Takes the rectangles without any informative pixel from the view.
@@ -58,17 +68,37 @@ void DropBlindRectangles(CameraView& view) {
 
 }  // namespace
 
-ImageSize ReducedSize(ImageSize size, int reduction) {
+ImageSize ReducedSize(ImageSize size, double reduction) {
   const auto side = [reduction](int length) {
-    return std::max(1, static_cast<int>(std::lround(static_cast<double>(length) / reduction)));
+    return std::max(1, static_cast<int>(std::lround(length / reduction)));
   };
   return {side(size.width), side(size.height)};
 }
 
+int AutomaticReduction(const Camera& camera, const GroundGrid& grid, const PersonOptions& person) {
+  constexpr double kMinWidth_px = 4;
+  constexpr int kLargest = 16;
+  std::vector<double> widths_px;
+  for (CellIndex cell = 0; cell < grid.count(); ++cell) {
+    const std::optional<PixelBox> box = PersonBox(camera, grid.Center(cell), person);
+    if (box && SpeaksFor(camera, grid.Center(cell), *box, Visibility::kCentre)) {
+      widths_px.push_back(box->width());
+    }
+  }
+  if (widths_px.empty()) return 1;
+  const auto quarter = widths_px.begin() + static_cast<std::ptrdiff_t>(widths_px.size() / 4);
+  std::nth_element(widths_px.begin(), quarter, widths_px.end());
+  int reduction = 1;
+  while (reduction < kLargest && *quarter / (2 * reduction) >= kMinWidth_px) reduction *= 2;
+  return reduction;
+}
+
 Result<CameraView> BuildView(const Camera& camera, const GroundGrid& grid,
-                             const PersonOptions& person, Visibility rule, int reduction,
+                             const PersonOptions& person, Visibility rule, double reduction,
                              const cv::Mat& informative) {
-  if (reduction < 1) return Fail("occupancy.reduction is {}; it must be at least 1", reduction);
+  if (!(reduction >= 1) || !std::isfinite(reduction)) {
+    return Fail("occupancy.reduction is {}; it must be at least 1", reduction);
+  }
   if (grid.count() < 1) return Fail("the grid has no cells; at least one is needed");
   const auto [width, height] = camera.size();
   if (!informative.empty() &&
@@ -84,12 +114,14 @@ Result<CameraView> BuildView(const Camera& camera, const GroundGrid& grid,
   view.size = ReducedSize(camera.size(), reduction);
   VANTAGE_ASSIGN_OR_RETURN(const Camera reduced, camera.Scaled(view.size));
   view.rectangles.resize(static_cast<std::size_t>(grid.count()));
+  if (rule == Visibility::kContinuous) view.weights.resize(view.rectangles.size());
   for (CellIndex cell = 0; cell < grid.count(); ++cell) {
     const Vector2d foot_m = grid.Center(cell);
     const std::optional<PixelBox> box = PersonBox(reduced, foot_m, person);
-    if (box && SpeaksFor(reduced, foot_m, *box, rule)) {
-      view.rectangles[static_cast<std::size_t>(cell)] = Rectangle(*box, view.size);
-    }
+    if (!box || !SpeaksFor(reduced, foot_m, *box, rule)) continue;
+    const auto index = static_cast<std::size_t>(cell);
+    view.rectangles[index] = Rectangle(*box, view.size);
+    if (!view.weights.empty()) view.weights[index] = VisibleShare(*box, view.size);
   }
   if (!informative.empty()) {
     view.informative = informative;

@@ -19,6 +19,9 @@ enum class Visibility {
   kGround,    ///< the foot point is in the picture
   kComplete,  ///< the whole rectangle of a person at the cell is
   kCentre,    ///< the rectangle's centre of gravity is (the thesis's proposal)
+  /// any of the rectangle is; the camera's word counts as much as the share of the rectangle that
+  /// is in the picture (the thesis's ideal, which it did not build)
+  kContinuous,
 };
 
 /// What one camera would see of a person at each cell of a grid.
@@ -33,17 +36,24 @@ struct CameraView {
   /// CV_8UC1 of mask_size: 255 where a pixel says something of people on the ground, 0 where it
   /// says nothing (a post that hides them). Empty: all pixels speak.
   cv::Mat informative = {};
+  /// What the camera's word counts for each cell, 0 to 1. Empty: 1 for every cell.
+  std::vector<float> weights = {};
 };
 
 /// Size of a picture whose sides are divided by `reduction` (>= 1) and rounded, at least 1 px.
-ImageSize ReducedSize(ImageSize size, int reduction);
+ImageSize ReducedSize(ImageSize size, double reduction);
+
+/// The largest power of two up to 16 by which the sides of the masks may be divided so that in at
+/// least three quarters of the cells that `camera` sees a person stays 4 pixels wide; 1 when it
+/// sees none.
+int AutomaticReduction(const Camera& camera, const GroundGrid& grid, const PersonOptions& person);
 
 /// The view of `camera` (of the size that its masks have) over `grid`, in masks reduced by
 /// `reduction`. A pixel belongs to a person when its centre does; a rectangle without any pixel is
 /// not visible, nor is one without any informative pixel (`informative` as in CameraView). Fails
-/// when reduction < 1, the grid is empty or `informative` has another type or size.
+/// when reduction < 1 or not finite, the grid is empty or `informative` has another type or size.
 Result<CameraView> BuildView(const Camera& camera, const GroundGrid& grid,
-                             const PersonOptions& person, Visibility rule, int reduction,
+                             const PersonOptions& person, Visibility rule, double reduction,
                              const cv::Mat& informative = {});
 
 /// 1 for each cell that at least one camera speaks for. All views are of the same grid.

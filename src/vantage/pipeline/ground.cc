@@ -7,6 +7,15 @@
 #include <utility>
 
 namespace vantage {
+namespace {
+
+double Reduction(const Camera& camera, const GroundGrid& grid, const PersonOptions& person,
+                 const OccupancyOptions& options) {
+  if (options.reduction) return *options.reduction;
+  return options.mode == SolveMode::kFast ? AutomaticReduction(camera, grid, person) : 1;
+}
+
+}  // namespace
 
 std::int64_t Ground::AreaCells() const {
   return std::accumulate(in_area.begin(), in_area.end(), std::int64_t{0});
@@ -34,9 +43,10 @@ Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options)
   }
   for (const SceneCamera& camera : scene.cameras) {
     const cv::Mat informative = camera.blind.empty() ? cv::Mat() : cv::Mat(camera.blind == 0);
-    VANTAGE_ASSIGN_OR_RETURN(CameraView view,
-                             BuildView(camera.camera, ground.grid, scene.person, options.visibility,
-                                       options.reduction, informative));
+    VANTAGE_ASSIGN_OR_RETURN(
+        CameraView view,
+        BuildView(camera.camera, ground.grid, scene.person, options.visibility,
+                  Reduction(camera.camera, ground.grid, scene.person, options), informative));
     ground.views.push_back(std::move(view));
   }
   ground.visible = VisibleCells(ground.views);
