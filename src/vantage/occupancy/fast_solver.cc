@@ -17,11 +17,11 @@
 namespace vantage::internal {
 namespace {
 
-constexpr double kMinForeground = 0.2;
-constexpr double kGivenUp = 1e-4;
+constexpr double kMinForeground = 0.25;
 constexpr double kMinCover = 1e-4;
-/// Presence below which a cell covers nothing.
-constexpr double kCoversNothing = 1e-3;
+/// A cell whose presence is below this share of its prior covers nothing, and is out if it does not
+/// rise.
+constexpr double kNothing = 0.1;
 
 /// Rows of floats for a picture, with one row more below; all 0.
 class Rows {
@@ -282,9 +282,9 @@ class FastSolver {
 
   /// Returns the largest change of a cell.
   double Iterate(CellStates& states) {
-    const double ignored = std::min(problem_.options.ignored, 1 - kCoversNothing);
     for (std::size_t slot = 0; slot < chosen_.size(); ++slot) {
       const double n = states.absence(slot);
+      const double ignored = std::min(problem_.options.ignored, 1 - Nothing(slot));
       cover_[slot] = std::max(n, kMinCover);
       log_cover_[slot] = n > ignored ? 0.0F : static_cast<float>(std::log(cover_[slot]));
     }
@@ -296,7 +296,7 @@ class FastSolver {
       if (iterated_[slot] == 0) continue;
       const double before = states.absence(slot);
       change = std::max(change, states.Step(slot, scores_[slot]));
-      if (1 - before < kGivenUp && states.absence(slot) >= before) {
+      if (1 - before < Nothing(slot) && states.absence(slot) >= before) {
         iterated_[slot] = 0;
         gave_way = true;
       }
@@ -306,6 +306,8 @@ class FastSolver {
     }
     return change;
   }
+
+  double Nothing(std::size_t slot) const { return kNothing * problem_.priors[chosen_[slot]]; }
 
   const Problem& problem_;
   std::vector<CameraFrame> cameras_;

@@ -265,7 +265,9 @@ TEST(OccupancySolver, RefusesViewsThatDoNotFit) {
   CameraView longer = view;
   longer.rectangles.resize(2);
   EXPECT_THAT(MessageOf(OccupancySolver::Create({view, longer}, {})), HasSubstr("camera 1 has 2"));
-  EXPECT_THAT(MessageOf(OccupancySolver::Create({view}, {.prior = 1})),
+  OccupancyOptions certain;
+  certain.prior = 1;
+  EXPECT_THAT(MessageOf(OccupancySolver::Create({view}, certain)),
               HasSubstr("occupancy.prior is 1"));
 }
 

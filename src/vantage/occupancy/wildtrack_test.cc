@@ -20,7 +20,6 @@ TEST(Wildtrack, PerfectSilhouettesOfEveryTenthFrame) {
   const GroundGrid grid = testing::WildtrackData::Grid(0.2);
   const PersonOptions person{.width_m = 0.5, .height_m = 1.8};
   OccupancyOptions options;
-  options.variance = 2e-4;
   std::vector<CameraView> views;
   for (const Camera& camera : data.cameras()) {
     views.push_back(BuildView(camera, grid, person, options.visibility, 1).value());

@@ -15,11 +15,15 @@
 namespace vantage {
 namespace {
 
-/// Masks of consecutive frames, solved in parallel: frames are independent of each other.
+/// Masks of consecutive frames, solved in parallel: frames are independent of each other. With a
+/// warm start they are not, and one thread solves them in order.
 class FrameBatch {
  public:
-  FrameBatch(const OccupancySolver& solver, std::int64_t frames, int threads)
-      : solver_(solver), masks_(static_cast<std::size_t>(frames)), threads_(threads) {}
+  FrameBatch(const OccupancySolver& solver, bool warm_start, std::int64_t frames, int threads)
+      : solver_(solver),
+        warm_start_(warm_start),
+        masks_(static_cast<std::size_t>(frames)),
+        threads_(warm_start ? 1 : threads) {}
 
   bool full() const { return used_ == masks_.size(); }
   std::vector<cv::Mat>& Next() { return masks_[used_++]; }
@@ -33,13 +37,17 @@ class FrameBatch {
     std::vector<Result<SolveReport>> solved(used_);
     ParallelFor(threads_, static_cast<std::int64_t>(used_), [&](std::int64_t i) {
       const auto index = static_cast<std::size_t>(i);
-      solved[index] = solver_.Solve(masks_[index],
-                                    std::span(maps.values).subspan(start + index * cells, cells));
+      const std::span<float> values(maps.values);
+      const std::size_t at = start + index * cells;
+      const std::span<const float> previous =
+          warm_start_ && at > 0 ? values.subspan(at - cells, cells) : std::span<float>();
+      solved[index] = solver_.Solve(masks_[index], values.subspan(at, cells), previous);
     });
     for (const Result<SolveReport>& result : solved) {
       if (!result) return tl::unexpected(result.error());
       iterations_ += result->iterations;
       report.frames_not_converged += result->converged ? 0 : 1;
+      report.pictures_missing += result->cameras_left_out;
       ++report.frames;
     }
     report.mean_iterations = static_cast<double>(iterations_) /
@@ -50,6 +58,7 @@ class FrameBatch {
 
  private:
   const OccupancySolver& solver_;
+  bool warm_start_;
   std::vector<std::vector<cv::Mat>> masks_;
   std::size_t used_ = 0;
   std::int64_t iterations_ = 0;
@@ -140,8 +149,8 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
 
   const std::int64_t total = stream.frame_count().value_or(0);
   // What a frame holds must not depend on the number of threads.
-  FrameBatch batch(solver, feedback ? OccupiedRegions::kFramesBetween : 4 * std::max(threads, 1),
-                   threads);
+  FrameBatch batch(solver, options.occupancy.warm_start,
+                   feedback ? OccupiedRegions::kFramesBetween : 4 * std::max(threads, 1), threads);
   std::int64_t frames_read = 0;
   for (bool more = true; more;) {
     while (more && !batch.full()) {

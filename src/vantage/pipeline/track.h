@@ -36,6 +36,9 @@ struct MapsReport {
   /// Fixed-point iterations per frame, and frames that used all allowed ones without settling.
   double mean_iterations = 0;
   std::int64_t frames_not_converged = 0;
+  /// Pictures, of all cameras together, that were missing: the maps of those frames are without
+  /// them.
+  std::int64_t pictures_missing = 0;
   /// Cells of the area, and of these the ones that no camera sees.
   std::int64_t area_cells = 0;
   std::int64_t unseen_area_cells = 0;
