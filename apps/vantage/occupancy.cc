@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "extension_rows.h"
 #include "scene_flags.h"
 #include "scene_masks.h"
 #include "vantage/base/file.h"
 #include "vantage/occupancy/map_file.h"
 #include "vantage/occupancy/pom_run.h"
+#include "vantage/pipeline/summary.h"
 
 namespace vantage::app {
 namespace {
@@ -41,21 +43,27 @@ Status RunScene(const Flags& flags, const CommonFlags& common) {
                                          {"not_converged", report.frames_not_converged},
                                          {"area_cells", report.area_cells},
                                          {"area_cells_unseen", report.unseen_area_cells},
+                                         {"extension", JsonOf(report.extension, setup.scene)},
                                          {"seconds", seconds},
                                          {"maps", flags.output.string()}};
     fmt::print("{}\n", json.dump(2));
     return {};
   }
-  PrintTable(
-      {{"frames", fmt::to_string(report.frames)},
-       {"cameras", fmt::to_string(setup.scene.cameras.size())},
-       {"cells", fmt::format("{} x {} of {} m", result.maps.grid.columns, result.maps.grid.rows,
-                             result.maps.grid.cell_m)},
-       {"area unseen", fmt::format("{} of {} cells", report.unseen_area_cells, report.area_cells)},
+  std::vector<ReportRow> rows = {
+      {"frames", fmt::to_string(report.frames)},
+      {"cameras", fmt::to_string(setup.scene.cameras.size())},
+      {"cells", fmt::format("{} x {} of {} m", result.maps.grid.columns, result.maps.grid.rows,
+                            result.maps.grid.cell_m)}};
+  const std::vector<ReportRow> extension = ExtensionRows(report.extension, setup.scene);
+  rows.insert(rows.end(), extension.begin(), extension.end());
+  rows.insert(
+      rows.end(),
+      {{"area unseen", fmt::format("{} of {} cells", report.unseen_area_cells, report.area_cells)},
        {"iterations", fmt::format("{:.1f} per frame", report.mean_iterations)},
        {"frames not converged", fmt::to_string(report.frames_not_converged)},
        {"seconds", fmt::format("{:.2f}", seconds)},
        {"maps", flags.output.string()}});
+  PrintTable(rows);
   return {};
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "command.h"
+#include "extension_rows.h"
 #include "scene_flags.h"
 #include "scene_masks.h"
 #include "vantage/background/report.h"
@@ -49,6 +50,8 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
                            result.maps.grid.cell_m)},
       {"area", fmt::format("{:.1f} m^2", scene.area.area_m2())},
   };
+  const std::vector<ReportRow> extension = ExtensionRows(maps.extension, scene);
+  rows.insert(rows.end(), extension.begin(), extension.end());
   if (maps.unseen_area_cells > 0) {
     rows.push_back({"unseen", fmt::format("{:.1f} % of the area is seen by no camera",
                                           100.0 * static_cast<double>(maps.unseen_area_cells) /

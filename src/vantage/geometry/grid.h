@@ -11,6 +11,17 @@
 
 namespace vantage {
 
+/// How far a grid goes beyond each side of the bounding box of an area, metres, at least 0.
+struct Extension {
+  double min_x_m = 0;
+  double max_x_m = 0;
+  double min_y_m = 0;
+  double max_y_m = 0;
+
+  static Extension Uniform(double all_m) { return {all_m, all_m, all_m, all_m}; }
+  friend bool operator==(const Extension&, const Extension&) = default;
+};
+
 /// Square cells of the ground. Cell (column, row) covers
 /// [min_x + column cell, min_x + (column + 1) cell) x [min_y + row cell, ...), metres;
 /// its index is column + row * columns.
@@ -21,10 +32,10 @@ struct GroundGrid {
   int columns = 0;
   int rows = 0;
 
-  /// The smallest grid that covers the polygon and `extension_m` around its bounding box, with the
-  /// polygon's bounding box starting on a cell border. Fails when cell_m is not positive,
-  /// extension_m is negative, or the grid would have more than 4 million cells.
-  static Result<GroundGrid> Cover(const Polygon& area, double cell_m, double extension_m);
+  /// The smallest grid that covers the polygon and its extension, with the polygon's bounding box
+  /// starting on a cell border: each side grows by whole cells. Fails when cell_m is not positive,
+  /// an extension is negative, or the grid would have more than 4 million cells.
+  static Result<GroundGrid> Cover(const Polygon& area, double cell_m, const Extension& extension);
 
   CellIndex count() const { return columns * rows; }
   CellIndex Index(int column, int row) const { return column + row * columns; }

@@ -30,8 +30,12 @@ std::int64_t Ground::UnseenAreaCells() const {
 
 Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options) {
   Ground ground;
+  std::vector<Camera> cameras;
+  for (const SceneCamera& camera : scene.cameras) cameras.push_back(camera.camera);
+  VANTAGE_ASSIGN_OR_RETURN(ground.extension, ChooseExtension(scene.area, scene.grid, cameras,
+                                                             scene.person, options.visibility));
   VANTAGE_ASSIGN_OR_RETURN(
-      ground.grid, GroundGrid::Cover(scene.area, scene.grid.cell_m, scene.grid.extension_m));
+      ground.grid, GroundGrid::Cover(scene.area, scene.grid.cell_m, ground.extension.extension()));
   const auto cells = static_cast<std::size_t>(ground.grid.count());
   ground.in_area.resize(cells);
   for (CellIndex cell = 0; cell < ground.grid.count(); ++cell) {

@@ -7,6 +7,7 @@
 
 #include "vantage/base/result.h"
 #include "vantage/geometry/grid.h"
+#include "vantage/occupancy/extension.h"
 #include "vantage/occupancy/solver.h"
 #include "vantage/occupancy/views.h"
 #include "vantage/scene/scene.h"
@@ -16,6 +17,8 @@ namespace vantage {
 /// The ground of a scene cut into cells, and what each camera can say of them.
 struct Ground {
   GroundGrid grid;
+  /// How far the grid goes beyond the area, and why.
+  ExtensionReport extension;
   /// Per cell: 1 inside the area of interest (its centre is), 0 in the extension.
   std::vector<std::uint8_t> in_area;
   /// Per cell: 1 where at least one camera speaks for it.

@@ -44,6 +44,21 @@ Json StageJson(double seconds, std::int64_t frames) {
 
 }  // namespace
 
+Json JsonOf(const ExtensionReport& report, const Scene& scene) {
+  Json json;
+  for (std::size_t i = 0; i < report.sides.size(); ++i) {
+    const ExtensionSide& side = report.sides[i];
+    Json& entry = json[std::string(kSideNames[i])];
+    entry["metres"] = side.extension_m;
+    entry["reason"] = NameOf(side.reason);
+    if (side.camera) entry["camera"] = scene.cameras[*side.camera].name;
+    for (std::size_t c = 0; c < side.cameras_m.size(); ++c) {
+      entry["cameras_metres"][scene.cameras[c].name] = side.cameras_m[c];
+    }
+  }
+  return json;
+}
+
 Result<Json> Summarize(const RunRequest& request, const Scene& scene, const StageOptions& options,
                        const TrackingResult& result) {
   const MapsReport& maps = result.report.maps;
@@ -63,6 +78,8 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   used["occupancy"] = Recorded(options.occupancy);
   used["linking"] = Recorded(options.linking);
   used["tracks"] = Recorded(options.tracks);
+
+  json["extension"] = JsonOf(maps.extension, scene);
 
   Json& counts = json["counts"];
   counts["cameras"] = scene.cameras.size();

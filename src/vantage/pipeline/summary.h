@@ -20,6 +20,9 @@ struct RunRequest {
   int threads = 1;
 };
 
+/// How far the grid goes beyond each side of the area and why, as in summary.json (FORMATS.md).
+nlohmann::ordered_json JsonOf(const ExtensionReport& report, const Scene& scene);
+
 /// The record of a run (summary.json): version, what was asked for, SHA-256 of every input file,
 /// options of every stage as used, counts, and seconds and frames per second of every stage.
 Result<nlohmann::ordered_json> Summarize(const RunRequest& request, const Scene& scene,

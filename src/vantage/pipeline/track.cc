@@ -138,6 +138,7 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   MapsReport& report = result.report;
   report.area_cells = ground.AreaCells();
   report.unseen_area_cells = ground.UnseenAreaCells();
+  report.extension = ground.extension;
   maps.grid = ground.grid;
   maps.first_frame = scene.first_frame;
   maps.frames_per_second = scene.frames_per_second;

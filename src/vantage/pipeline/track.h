@@ -10,6 +10,7 @@
 #include "vantage/base/result.h"
 #include "vantage/base/run_control.h"
 #include "vantage/linking/link_maps.h"
+#include "vantage/occupancy/extension.h"
 #include "vantage/occupancy/maps.h"
 #include "vantage/occupancy/solver.h"
 #include "vantage/pipeline/occupied.h"
@@ -42,6 +43,7 @@ struct MapsReport {
   /// Cells of the area, and of these the ones that no camera sees.
   std::int64_t area_cells = 0;
   std::int64_t unseen_area_cells = 0;
+  ExtensionReport extension;
   /// Wall-clock.
   double read_secs = 0;
   double background_secs = 0;

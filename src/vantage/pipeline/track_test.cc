@@ -170,6 +170,37 @@ TEST_F(TwoCameras, SummaryRecordsInputsAndOptions) {
   EXPECT_EQ((*summary)["options"]["linking"]["depth"], 2);
   EXPECT_EQ((*summary)["inputs_sha256"][scene.file.string()], Sha256OfFile(scene.file).value());
   EXPECT_EQ((*summary)["counts"]["frames"], kFrames);
+  EXPECT_EQ((*summary)["options"]["grid"]["extension"], 1);
+  EXPECT_EQ((*summary)["extension"]["max_y"].dump(), R"({"metres":1.0,"reason":"given"})");
+}
+
+TEST_F(TwoCameras, TheGroundGoesAsFarAsWhoCoversTheArea) {
+  Draw({Walk(1, {-3, -2}, {3, 2})});
+  Scene scene = Load();
+  scene.grid.extension_m = std::nullopt;
+  scene.grid.max_extension_m = 5;
+  scene.frame_count = 2;
+  const auto result = TrackPeople(scene, {}, 1);
+  ASSERT_TRUE(result) << MessageOf(result);
+  const ExtensionReport& extension = result->report.maps.extension;
+  const auto& sides = extension.sides;
+  // Each camera looks across the area; the one in the south down on it from y = -10 m.
+  EXPECT_EQ(sides[2].camera, 1u);
+  EXPECT_EQ(sides[3].camera, 0u);
+  EXPECT_EQ(sides[2].extension_m, sides[3].extension_m);
+  EXPECT_GT(sides[3].extension_m, 1);
+  EXPECT_EQ(result->maps.grid,
+            GroundGrid::Cover(scene.area, scene.grid.cell_m, extension.extension()).value());
+
+  const auto summary = Summarize({.arguments = {}, .scene = scene.file, .data = {}, .threads = 1},
+                                 scene, {}, *result);
+  ASSERT_TRUE(summary) << MessageOf(summary);
+  EXPECT_EQ((*summary)["options"]["grid"]["extension"], "auto");
+  const auto& max_y = (*summary)["extension"]["max_y"];
+  EXPECT_EQ(max_y["metres"], sides[3].extension_m);
+  EXPECT_EQ(max_y["reason"], NameOf(sides[3].reason));
+  EXPECT_EQ(max_y["camera"], "south");
+  EXPECT_EQ(max_y["cameras_metres"]["north"], sides[3].cameras_m[1]);
 }
 
 TEST_F(TwoCameras, AreaThatNoCameraSeesIsAnError) {

@@ -98,8 +98,12 @@ Status BindTable(const TableReader& root, std::string_view key, Options& options
 
 void VisitOptions(GridOptions& o, OptionVisitor& v) {
   v.Number({"cell", "m", "side of a cell of the ground"}, o.cell_m, Range::Between(0.02, 10));
-  v.Number({"extension", "m", "how far the grid goes beyond the area"}, o.extension_m,
+  v.NumberOr({"extension", "m", "how far the grid goes beyond the area"}, o.extension_m, "auto",
+             Range::Between(0, 100));
+  v.Number({"max_extension", "m", "how far an extension of auto goes at most"}, o.max_extension_m,
            Range::Between(0, 100));
+  v.Number({"covering_share", "", "who covers less of a person inside needs no cell (auto)"},
+           o.covering_share, Range::Between(0.01, 1));
 }
 
 Result<std::unique_ptr<FrameSource>> OpenSource(const SourceSpec& source) {

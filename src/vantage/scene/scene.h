@@ -51,8 +51,13 @@ struct SceneCamera {
 struct GridOptions {
   /// Side of a cell in metres, 0.02 <= cell <= 10.
   double cell_m = 0.5;
-  /// The grid grows by this much around the area, 0 <= extension <= 100.
-  double extension_m = 0;
+  /// The grid grows by this much around the area, 0 <= extension <= 100; none: `auto`, on each side
+  /// by as much as people outside need who cover cells inside (occupancy/extension.h),
+  std::optional<double> extension_m = std::nullopt;
+  /// but at most by this, 0 <= max_extension <= 100.
+  double max_extension_m = 6;
+  /// Who hides less than this share of somebody inside needs no cell, 0.01 <= covering_share <= 1.
+  double covering_share = 0.25;
 };
 void VisitOptions(GridOptions& options, OptionVisitor& visitor);
 

@@ -206,7 +206,8 @@ TEST_F(SceneTest, ErrorsNameFileLineAndKey) {
       {With("cell = 0.25", "cell = 0"),
        "scene.toml:12: grid.cell: is 0; it must be between 0.02 and 10 m"},
       {With("cell = 0.25", "size = 1"),
-       "scene.toml:12: grid.size: unknown key; allowed are cell, extension"},
+       "scene.toml:12: grid.size: unknown key; allowed are cell, extension, max_extension, "
+       "covering_share"},
       {With("shape = \"box\"", "shape = \"cone\""),
        "scene.toml:17: person.shape: is \"cone\"; it must be one"},
       {"linking = 3\n" + With("[linking]\ndepth = 2", ""),
