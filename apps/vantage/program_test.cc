@@ -149,6 +149,46 @@ TEST(Program, MapsFromMasksAsPicturesAndAsVideo) {
   EXPECT_EQ(maps[0], maps[1]);
 }
 
+TEST(Program, ExplainsTheGroundAndOneFrame) {
+  const SmallScene scene;
+  const std::string folder = (scene.folder / "why").string();
+  const std::string maps = (scene.folder / "maps.h5").string();
+  const std::vector<std::string> pictures = {"plan_ground.png", "plan_map.png",
+                                             "view_one_ground.png", "view_one_map.png"};
+  // Alone, nothing beyond the frame is read.
+  const Outcome alone = RunProgram(
+      fmt::format("occupancy '{}' --explain '{}' --frame 5 --extension auto --json --quiet",
+                  scene.Write(), folder));
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  EXPECT_EQ(Entries(folder), pictures);
+  const auto json = nlohmann::json::parse(alone.out);
+  EXPECT_EQ(json["frames"], 6);
+  EXPECT_FALSE(json.contains("maps"));
+  EXPECT_EQ(json["explained"]["frame"], 5);
+  ASSERT_EQ(json["explained"]["peaks"].size(), 1u);
+  EXPECT_GT(json["explained"]["peaks"][0]["probability"], 0.5);
+  EXPECT_EQ(json["extension"]["max_y"]["camera"], "one");
+  EXPECT_GT(json["extension"]["max_y"]["metres"], 0);
+  for (const std::string& name : pictures) {
+    EXPECT_FALSE(cv::imread(folder + "/" + name).empty()) << name;
+  }
+
+  // Beside the maps, the same pictures, whatever the number of threads; into an empty folder too.
+  const std::filesystem::path again = scene.folder / "again";
+  std::filesystem::create_directories(again);
+  const Outcome both = RunProgram(fmt::format(
+      "occupancy '{}' --explain '{}' --frame 5 --extension auto -o '{}' --quiet --threads 3",
+      scene.Write(), again.string(), maps));
+  ASSERT_EQ(both.status, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr("frame 5, 1 found"));
+  EXPECT_THAT(both.out, HasSubstr("extension min_x"));
+  EXPECT_TRUE(std::filesystem::exists(maps));
+  for (const std::string& name : pictures) {
+    EXPECT_EQ(ReadTextFile(again / name).value(), ReadTextFile(folder + "/" + name).value())
+        << name;
+  }
+}
+
 TEST(Program, FlagsWinOverTheScene) {
   SmallScene scene;
   scene.more = "[occupancy]\nvariance = 0.002";
@@ -229,6 +269,41 @@ TEST(HostileScene, AreaOutsideEveryView) {
   ExpectFailure(scene, "no camera sees");
 }
 
+/// A limit on the size of files (in blocks of 512 bytes), its signal ignored, fails like a full
+/// disk: in the middle of a write.
+std::string FullDiskAfter(int blocks) { return fmt::format("trap '' XFSZ; ulimit -f {}", blocks); }
+
+TEST(HostileScene, FolderThatCannotHoldAnExplanation) {
+  const SmallScene scene;
+  const std::string path = scene.Write();
+  const auto explain = [&](const std::string& folder, const std::string& more, int status,
+                           const std::string& part) {
+    ExpectOneLine(
+        RunProgram(fmt::format("occupancy '{}' --explain '{}' {} --quiet", path, folder, more)),
+        status, part);
+  };
+  const std::vector<std::string> before = Entries(scene.folder.path());
+  const std::string out = scene.out().string();
+  explain("/dev/null/why", "", 1, "/dev/null");
+  explain((scene.folder / "masks").string(), "", 1, "masks");
+  explain(path, "", 1, "scene.toml");
+  explain(out, "--frame 20", 1, "end at frame 19");
+  explain(out, "--frame 999999999", 1, "end at frame 19");
+  explain(out, "--frame -1", 2, "--frame");
+  explain(out, "--frame one", 2, "--frame");
+  explain(out, "--frame 9223372036854775807", 2, "--frame");
+  explain(out, fmt::format("-o '{0}/masks/000007.png/maps.h5'", scene.folder.path().string()), 1,
+          "000007.png");
+  ExpectOneLine(RunProgram(fmt::format("occupancy '{}' --frame 3 -o '{}'", path, out)), 2,
+                "--explain");
+  ExpectOneLine(RunProgram(fmt::format("occupancy --pom x.pom --explain '{}'", out)), 2, "scene");
+  ExpectOneLine(
+      RunProgram(fmt::format("occupancy '{}' --explain '{}' --quiet", path, out), FullDiskAfter(8)),
+      1, "cannot be written");
+  EXPECT_EQ(Entries(scene.folder.path()), before);
+  EXPECT_FALSE(std::filesystem::exists(scene.out()));
+}
+
 TEST(HostileScene, UnwritableOutput) {
   const SmallScene scene;
   const std::string path = scene.Write();
@@ -236,10 +311,6 @@ TEST(HostileScene, UnwritableOutput) {
                 "/dev/null");
   ExpectOneLine(RunProgram(fmt::format("track '{0}' -o '{0}' --quiet", path)), 1, "scene.toml");
 }
-
-/// A limit on the size of files (in blocks of 512 bytes), its signal ignored, fails like a full
-/// disk: in the middle of a write.
-std::string FullDiskAfter(int blocks) { return fmt::format("trap '' XFSZ; ulimit -f {}", blocks); }
 
 TEST(HostileScene, FullDisk) {
   const SmallScene scene;

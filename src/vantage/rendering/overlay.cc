@@ -28,19 +28,6 @@ cv::Point2d Project(const Camera& camera, const Vector2d& ground_m) {
   return pixel ? cv::Point2d(pixel->x(), pixel->y()) : cv::Point2d(kNowhere, kNowhere);
 }
 
-/// A straight line of the ground, in pieces short enough that the lens may bend it and that what
-/// cannot be projected drops out alone.
-void GroundLine(cv::Mat& picture, const Camera& camera, const Vector2d& from, const Vector2d& to,
-                const cv::Scalar& color, int thickness_px, double opacity) {
-  const int pieces = std::clamp(static_cast<int>((to - from).norm() / 0.25), 1, 2000);
-  std::vector<cv::Point2d> points;
-  for (int i = 0; i <= pieces; ++i) {
-    points.push_back(Project(camera, from + (to - from) * i / pieces));
-  }
-  drawing::FadingLine(picture, points, std::vector<double>(points.size(), opacity), color,
-                      thickness_px);
-}
-
 bool Overlaps(const PixelBox& box, const cv::Mat& picture) {
   return box.max_x >= 0 && box.max_y >= 0 && box.min_x <= picture.cols - 1 &&
          box.min_y <= picture.rows - 1;
@@ -107,6 +94,18 @@ void DrawTag(cv::Mat& picture, const Tag& tag) {
 
 }  // namespace
 
+void DrawGroundLine(cv::Mat& picture, const Camera& camera, const Vector2d& from,
+                    const Vector2d& to, const cv::Scalar& color, int thickness_px, double opacity) {
+  // Short enough that the lens may bend it and that what cannot be projected drops out alone.
+  const int pieces = std::clamp(static_cast<int>((to - from).norm() / 0.25), 1, 2000);
+  std::vector<cv::Point2d> points;
+  for (int i = 0; i <= pieces; ++i) {
+    points.push_back(Project(camera, from + (to - from) * i / pieces));
+  }
+  drawing::FadingLine(picture, points, std::vector<double>(points.size(), opacity), color,
+                      thickness_px);
+}
+
 void DrawGround(cv::Mat& picture, const Camera& camera, const Polygon& area, bool with_grid) {
   const double unit = UnitOf(picture);
   if (with_grid) {
@@ -116,16 +115,16 @@ void DrawGround(cv::Mat& picture, const Camera& camera, const Polygon& area, boo
     const double step = std::max(1.0, std::ceil((high - low).maxCoeff() / 50));
     const cv::Scalar color = {96, 86, 78};
     for (const double x : drawing::Multiples(step, low.x(), high.x())) {
-      GroundLine(picture, camera, {x, low.y()}, {x, high.y()}, color, 1, 0.6);
+      DrawGroundLine(picture, camera, {x, low.y()}, {x, high.y()}, color, 1, 0.6);
     }
     for (const double y : drawing::Multiples(step, low.y(), high.y())) {
-      GroundLine(picture, camera, {low.x(), y}, {high.x(), y}, color, 1, 0.6);
+      DrawGroundLine(picture, camera, {low.x(), y}, {high.x(), y}, color, 1, 0.6);
     }
   }
   const auto& corners = area.corners_m();
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    GroundLine(picture, camera, corners[i], corners[(i + 1) % corners.size()], {255, 255, 255},
-               Thickness(1.2 * unit), 0.35);
+    DrawGroundLine(picture, camera, corners[i], corners[(i + 1) % corners.size()], {255, 255, 255},
+                   Thickness(1.2 * unit), 0.35);
   }
 }
 

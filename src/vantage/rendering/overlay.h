@@ -12,6 +12,12 @@
 
 namespace vantage {
 
+/// Draws a straight line of the ground into a camera's picture (CV_8UC3 of the camera's size), bent
+/// as the lens bends it; what cannot be projected is left out.
+void DrawGroundLine(cv::Mat& picture, const Camera& camera, const Eigen::Vector2d& from_m,
+                    const Eigen::Vector2d& to_m, const cv::Scalar& color, int thickness_px,
+                    double opacity);
+
 /// Draws the outline of the area on a camera's picture (CV_8UC3 of the camera's size), and a grid
 /// of metres when there is no picture to show the ground.
 void DrawGround(cv::Mat& picture, const Camera& camera, const Polygon& area, bool with_grid);

@@ -23,6 +23,7 @@ const cv::Scalar kAreaLine = {236, 232, 228};
 const cv::Scalar kObstacle = {60, 56, 120};
 const cv::Scalar kDoor = {150, 200, 110};
 const cv::Scalar kDark = {12, 10, 8};
+const cv::Scalar kCamera = {250, 236, 214};
 
 /// 1, 2 or 5 times a power of ten: the smallest that is at least `least`.
 double NiceStep(double least) {
@@ -37,11 +38,16 @@ std::string Number(double value) { return fmt::format("{:.6g}", value); }
 
 }  // namespace
 
-Plan::Plan(const Scene& scene, cv::Size size) {
+Plan::Plan(const Scene& scene, cv::Size size)
+    : Plan(scene, scene.area.min_m(), scene.area.max_m(), size) {
+  for (const SceneCamera& camera : scene.cameras) {
+    DrawCamera(ground_, camera.camera, camera.name, kCamera);
+  }
+}
+
+Plan::Plan(const Scene& scene, const Vector2d& low, const Vector2d& high, cv::Size size) {
   const double label_px = 26;
   unit_ = std::min(size.width, size.height) / 600.0;
-  const Vector2d low = scene.area.min_m();
-  const Vector2d high = scene.area.max_m();
   const Vector2d side = (high - low) + Vector2d::Constant(0.08 * (high - low).maxCoeff());
   pixels_per_m_ = std::min((size.width - label_px) / side.x(), (size.height - label_px) / side.y());
   center_m_ = (low + high) / 2;
@@ -61,7 +67,6 @@ Plan::Plan(const Scene& scene, cv::Size size) {
   }
   for (const Polygon& door : scene.doors) drawing::Polygon(ground_, outline(door), kDoor, 1, 0.9);
   drawing::Polygon(ground_, outline(scene.area), kAreaLine, 2, 0.8);
-  DrawCameras(scene);
   DrawScaleBar();
 }
 
@@ -134,40 +139,37 @@ void Plan::DrawGrid() {
   drawing::Text(ground_, "m", {8, bottom}, style);
 }
 
-void Plan::DrawCameras(const Scene& scene) {
-  const cv::Scalar color = {250, 236, 214};
+void Plan::DrawCamera(cv::Mat& plan, const Camera& camera, const std::string& name,
+                      const cv::Scalar& color) const {
   const double size = std::max(7.0, 12 * unit_);
   drawing::TextStyle style{.height_px = std::max(8.0, 9 * unit_), .color = color, .halo_px = 2};
-  for (const SceneCamera& seen_by : scene.cameras) {
-    const Vector2d position_m = seen_by.camera.center_m().head<2>();
-    Vector2d looks = seen_by.camera.pose().rotation.row(2).head<2>();  // optical axis on the ground
-    if (looks.norm() < 1e-6) looks = Vector2d(0, 1);
-    looks.normalize();
-    const cv::Point2d true_px = PixelFromGround(position_m);
-    // Inside the labels of the axes.
-    const cv::Point2d px(std::clamp(true_px.x, size + 30, ground_.cols - size - 4),
-                         std::clamp(true_px.y, size + 4, ground_.rows - size - 24));
-    const bool outside = cv::norm(true_px - px) > 1;
-    // A wedge that opens along the view; beyond the edge, an arrow towards where the camera is.
-    cv::Point2d along(looks.x(), -looks.y());
-    if (outside) along = (true_px - px) / cv::norm(true_px - px);
-    const cv::Point2d across(-along.y, along.x);
-    std::vector<cv::Point2d> shape;
-    if (outside) {
-      shape = {px + 0.7 * size * along, px - 0.5 * size * along + 0.55 * size * across,
-               px - 0.5 * size * along - 0.55 * size * across};
-    } else {
-      shape = {px, px + size * along + 0.6 * size * across,
-               px + size * along - 0.6 * size * across};
-    }
-    drawing::Polygon(ground_, shape, kDark, 3, 0.6);
-    drawing::Polygon(ground_, shape, color, 0, outside ? 1 : 0.5);
-    if (!outside) drawing::Disc(ground_, px, 0.35 * size, color);
-    const bool on_left = px.x < ground_.cols / 2.0;
-    style.anchor = on_left ? drawing::Anchor::kLeft : drawing::Anchor::kRight;
-    drawing::Text(ground_, seen_by.name,
-                  {px.x + (on_left ? size + 3 : -size - 3), px.y + style.height_px / 2}, style);
+  const Vector2d position_m = camera.center_m().head<2>();
+  Vector2d looks = camera.pose().rotation.row(2).head<2>();  // optical axis on the ground
+  if (looks.norm() < 1e-6) looks = Vector2d(0, 1);
+  looks.normalize();
+  const cv::Point2d true_px = PixelFromGround(position_m);
+  // Inside the labels of the axes.
+  const cv::Point2d px(std::clamp(true_px.x, size + 30, plan.cols - size - 4),
+                       std::clamp(true_px.y, size + 4, plan.rows - size - 24));
+  const bool outside = cv::norm(true_px - px) > 1;
+  // A wedge that opens along the view; beyond the edge, an arrow towards where the camera is.
+  cv::Point2d along(looks.x(), -looks.y());
+  if (outside) along = (true_px - px) / cv::norm(true_px - px);
+  const cv::Point2d across(-along.y, along.x);
+  std::vector<cv::Point2d> shape;
+  if (outside) {
+    shape = {px + 0.7 * size * along, px - 0.5 * size * along + 0.55 * size * across,
+             px - 0.5 * size * along - 0.55 * size * across};
+  } else {
+    shape = {px, px + size * along + 0.6 * size * across, px + size * along - 0.6 * size * across};
   }
+  drawing::Polygon(plan, shape, kDark, 3, 0.6);
+  drawing::Polygon(plan, shape, color, 0, outside ? 1 : 0.5);
+  if (!outside) drawing::Disc(plan, px, 0.35 * size, color);
+  const bool on_left = px.x < plan.cols / 2.0;
+  style.anchor = on_left ? drawing::Anchor::kLeft : drawing::Anchor::kRight;
+  drawing::Text(plan, name, {px.x + (on_left ? size + 3 : -size - 3), px.y + style.height_px / 2},
+                style);
 }
 
 void Plan::DrawScaleBar() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <vector>
 
 #include "vantage/rendering/people.h"
@@ -17,6 +18,14 @@ class Plan {
   /// Draws what does not move. The area fills `size` up to a margin; `size` at least 64 x 64.
   Plan(const Scene& scene, cv::Size size);
 
+  /// The rectangle [low, high] of the ground in metres, without cameras.
+  Plan(const Scene& scene, const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m,
+       cv::Size size);
+
+  /// Draws a camera on a plan: a wedge where it stands, an arrow towards it when that is outside.
+  void DrawCamera(cv::Mat& plan, const Camera& camera, const std::string& name,
+                  const cv::Scalar& color) const;
+
   /// The plan with these people: dots with numbers and trails (CV_8UC3).
   cv::Mat Draw(const std::vector<Person>& people) const;
 
@@ -26,7 +35,6 @@ class Plan {
  private:
   void DrawCoverage(const Scene& scene);
   void DrawGrid();
-  void DrawCameras(const Scene& scene);
   void DrawScaleBar();
 
   cv::Mat ground_;
