@@ -55,7 +55,7 @@ struct GridOptions {
   /// by as much as people outside need who cover cells inside (occupancy/extension.h),
   std::optional<double> extension_m = std::nullopt;
   /// but at most by this, 0 <= max_extension <= 100.
-  double max_extension_m = 6;
+  double max_extension_m = 4;
   /// Who hides less than this share of somebody inside needs no cell, 0.01 <= covering_share <= 1.
   double covering_share = 0.25;
 };
