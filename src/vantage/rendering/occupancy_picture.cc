@@ -44,7 +44,7 @@ Plan PlanOf(const Scene& scene, const GroundGrid& grid, double around) {
   const Vector2d low = LowOf(grid) - margin;
   const Vector2d high = LowOf(grid) + SideOf(grid) + margin;
   const Vector2d size_px =
-      ((high - low) / (high - low).maxCoeff() * kPlan_px).cwiseMax(kPlan_px / 4);
+      ((high - low) / (high - low).maxCoeff() * kPlan_px).cwiseMax(kPlan_px / 4.0);
   return {scene, low, high, {static_cast<int>(size_px.x()), static_cast<int>(size_px.y())}};
 }
 
@@ -95,7 +95,6 @@ OccupancyPicture::OccupancyPicture(const Scene& scene, const GroundGrid& grid,
       figure_(scene.person),
       scene_name_(scene.name),
       grid_(grid),
-      grid_border_(Polygon::Rectangle(LowOf(grid), LowOf(grid) + SideOf(grid)).value()),
       views_(std::move(views)),
       visible_(VisibleCells(views_)),
       extension_(extension),
@@ -110,13 +109,20 @@ OccupancyPicture::OccupancyPicture(const Scene& scene, const GroundGrid& grid,
   }
 }
 
+std::array<OccupancyPicture::Border, 2> OccupancyPicture::Borders() const {
+  const Vector2d low = LowOf(grid_);
+  const Vector2d high = low + SideOf(grid_);
+  return {{{{low, {high.x(), low.y()}, high, {low.x(), high.y()}}, kExtension},
+           {area_.corners_m(), kArea}}};
+}
+
 void OccupancyPicture::DrawBorders(cv::Mat& picture, const Plan& plan) const {
-  for (const auto& [polygon, color] : {std::pair(&grid_border_, kExtension), {&area_, kArea}}) {
+  for (const Border& border : Borders()) {
     std::vector<cv::Point2d> corners;
-    for (const Vector2d& corner : polygon->corners_m()) {
+    for (const Vector2d& corner : border.corners_m) {
       corners.push_back(plan.PixelFromGround(corner));
     }
-    drawing::Polygon(picture, corners, color, 2);
+    drawing::Polygon(picture, corners, border.color, 2);
   }
 }
 
@@ -230,12 +236,13 @@ cv::Mat OccupancyPicture::Canvas(std::size_t camera, const cv::Mat& picture,
 
 void OccupancyPicture::DrawBordersInView(cv::Mat& view, std::size_t camera) const {
   const int thickness = std::max(1, view.rows / 280);
-  for (const auto& [polygon, color] : {std::pair(&grid_border_, kExtension), {&area_, kArea}}) {
-    const auto& corners = polygon->corners_m();
+  for (const Border& border : Borders()) {
+    const auto& corners = border.corners_m;
     for (const bool rim : {true, false}) {
       for (std::size_t i = 0; i < corners.size(); ++i) {
         DrawGroundLine(view, cameras_[camera], corners[i], corners[(i + 1) % corners.size()],
-                       rim ? kDarkGround : color, thickness + (rim ? 2 : 0), rim ? 0.5 : 0.95);
+                       rim ? kDarkGround : border.color, thickness + (rim ? 2 : 0),
+                       rim ? 0.5 : 0.95);
       }
     }
   }

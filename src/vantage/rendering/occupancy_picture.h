@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <opencv2/core/mat.hpp>
 #include <span>
 #include <string>
@@ -42,6 +43,12 @@ class OccupancyPicture {
                     const std::vector<Peak>& peaks) const;
 
  private:
+  struct Border {
+    std::vector<Eigen::Vector2d> corners_m;
+    cv::Scalar color;
+  };
+  /// Of the extension and of the area.
+  std::array<Border, 2> Borders() const;
   cv::Rect2d BoxOf(CellIndex cell, const Plan& plan) const;
   void DrawBorders(cv::Mat& picture, const Plan& plan) const;
   void DrawCameras(cv::Mat& picture, const Plan& plan) const;
@@ -59,7 +66,6 @@ class OccupancyPicture {
   std::vector<std::string> names_;
   std::string scene_name_;
   GroundGrid grid_;
-  Polygon grid_border_;
   std::vector<CameraView> views_;
   std::vector<std::uint8_t> in_area_, visible_;
   ExtensionReport extension_;
