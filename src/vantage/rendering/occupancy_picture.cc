@@ -335,10 +335,8 @@ std::vector<Person> OccupancyPicture::PeopleOf(const std::vector<Peak>& peaks) c
 
 cv::Mat OccupancyPicture::DrawMap(std::span<const float> q, const std::vector<Peak>& peaks) const {
   cv::Mat plan = map_plan_.Draw({});
-  double expected = 0;
   for (CellIndex cell = 0; cell < grid_.count(); ++cell) {
     const double probability = q[static_cast<std::size_t>(cell)];
-    expected += probability;
     // By the square root: small probabilities are the map's second thoughts.
     const double share = std::sqrt(std::clamp(probability, 0.0, 1.0));
     if (share > 0.12) drawing::FilledRectangle(plan, BoxOf(cell, map_plan_), kHeat, share);
@@ -354,8 +352,7 @@ cv::Mat OccupancyPicture::DrawMap(std::span<const float> q, const std::vector<Pe
                   {at.x + radius_px + 4, at.y - 0.3 * radius_px},
                   {.height_px = 15, .color = color, .halo_px = 2.5, .bold = true});
   }
-  Caption(plan, {{scene_name_, kText},
-                 {fmt::format("{} found, {:.1f} expected", peaks.size(), expected), kHeat}});
+  Caption(plan, {{scene_name_, kText}, {fmt::format("{} found", peaks.size()), kHeat}});
   return plan;
 }
 
