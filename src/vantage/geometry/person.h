@@ -12,12 +12,13 @@ namespace vantage {
 
 /// The upright figure that stands for a person (algorithms.md section 3; thesis 4.4.2).
 struct PersonOptions {
-  enum class Shape { kBox, kFlat };
+  enum class Shape { kBox, kCylinder, kFlat };
   /// Breadth in metres, 0.05 <= width <= 5.
   double width_m = 0.5;
   /// Height in metres, 0.1 <= height <= 5.
   double height_m = 1.75;
   /// kBox: bounding rectangle of an upright box with a square base, sides along the world's axes.
+  /// kCylinder: of an upright cylinder; the same from every side.
   /// kFlat: bounding rectangle of a flat figure that faces the camera.
   Shape shape = Shape::kFlat;
 };
@@ -38,5 +39,18 @@ struct PixelBox {
 /// extent (a flat figure straight below the camera).
 std::optional<PixelBox> PersonBox(const Camera& camera, const Eigen::Vector2d& foot_m,
                                   const PersonOptions& person);
+
+/// An upright figure that would fill a rectangle of a picture.
+struct PersonInBox {
+  Eigen::Vector2d foot_m = Eigen::Vector2d::Zero();
+  double width_m = 0;
+  double height_m = 0;
+};
+
+/// The inverse of PersonBox: the figure of this shape whose bounding rectangle is `box` (to 1e-3 of
+/// its sides). None when there is none (the lower edge is not on the ground in front of the camera,
+/// or the view is so steep that a box as flat as this one needs no height).
+std::optional<PersonInBox> PersonFromBox(const Camera& camera, const PixelBox& box,
+                                         PersonOptions::Shape shape);
 
 }  // namespace vantage

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "vantage/base/test_support.h"
 #include "vantage/geometry/test_cameras.h"
@@ -25,6 +26,8 @@ using testing::RandomPose;
 constexpr ImageSize kSize = {768, 576};
 constexpr PersonOptions kBox = {
     .width_m = 0.6, .height_m = 1.8, .shape = PersonOptions::Shape::kBox};
+constexpr PersonOptions kCylinder = {
+    .width_m = 0.6, .height_m = 1.8, .shape = PersonOptions::Shape::kCylinder};
 constexpr PersonOptions kFlat = {
     .width_m = 0.6, .height_m = 1.8, .shape = PersonOptions::Shape::kFlat};
 
@@ -82,8 +85,53 @@ TEST(PersonBox, TightlyHoldsEveryPointOfTheUprightBox) {
   }
 }
 
+TEST(PersonBox, TightlyHoldsEveryPointOfTheUprightCylinder) {
+  for (const bool distorted : {false, true}) {
+    ForRandomViews(100, distorted, kCylinder,
+                   [&](const Camera& camera, const Vector2d& foot, const PixelBox& box) {
+                     PixelBox sampled = {1e9, 1e9, -1e9, -1e9};
+                     for (int i = 0; i < 2000; ++i) {
+                       const double angle = 2 * std::numbers::pi * i / 2000;
+                       for (int iz = 0; iz <= 10; ++iz) {
+                         const Vector3d point(foot.x() + 0.3 * std::cos(angle),
+                                              foot.y() + 0.3 * std::sin(angle), 0.18 * iz);
+                         const auto pixel = camera.ImageFromWorld(point);
+                         ASSERT_TRUE(pixel);
+                         sampled.min_x = std::min(sampled.min_x, pixel->x());
+                         sampled.min_y = std::min(sampled.min_y, pixel->y());
+                         sampled.max_x = std::max(sampled.max_x, pixel->x());
+                         sampled.max_y = std::max(sampled.max_y, pixel->y());
+                       }
+                     }
+                     // The parabola between points of the circle, and distortion, which bends the
+                     // sides out of the rectangle.
+                     const double slack = distorted ? 0.02 : 2e-3;
+                     EXPECT_NEAR(sampled.min_x, box.min_x, slack * box.width());
+                     EXPECT_NEAR(sampled.max_x, box.max_x, slack * box.width());
+                     EXPECT_NEAR(sampled.min_y, box.min_y, slack * box.height());
+                     EXPECT_NEAR(sampled.max_y, box.max_y, slack * box.height());
+                   });
+  }
+}
+
+TEST(PersonBox, CylinderLooksTheSameFromEverySide) {
+  const PinholeModel lens{.fx_px = 500, .fy_px = 500, .cx_px = 383.5, .cy_px = 287.5};
+  const auto seen_from = [&](double angle) {
+    const Vector3d center(10 * std::cos(angle), 10 * std::sin(angle), 4);
+    const Camera camera = Camera::Create(kSize, lens, LookAt(center, {0, 0, 1})).value();
+    return PersonBox(camera, {0, 0}, kCylinder).value();
+  };
+  const PixelBox first = seen_from(0);
+  for (const double angle : {0.3, 1.0, 2.5, 4.4}) {
+    const PixelBox other = seen_from(angle);
+    EXPECT_NEAR(other.width(), first.width(), 1e-3 * first.width());
+    EXPECT_NEAR(other.min_y, first.min_y, 1e-3 * first.height());
+    EXPECT_NEAR(other.max_y, first.max_y, 1e-3 * first.height());
+  }
+}
+
 TEST(PersonBox, HoldsFootAndHead) {
-  for (const PersonOptions& person : {kBox, kFlat}) {
+  for (const PersonOptions& person : {kBox, kCylinder, kFlat}) {
     ForRandomViews(
         300, false, person, [&](const Camera& camera, const Vector2d& foot, const PixelBox& box) {
           for (const double z_m : {0.0, 0.5 * person.height_m, person.height_m}) {
@@ -120,7 +168,7 @@ TEST(PersonBox, FlatFigureFacesTheCamera) {
 TEST(PersonBox, IsNoneWhenAnyPartCannotBeProjected) {
   const PinholeModel lens{.fx_px = 500, .fy_px = 500, .cx_px = 383.5, .cy_px = 287.5};
   const Camera level = Camera::Create(kSize, lens, LookAt({0, 0, 1}, {0, 1, 1})).value();
-  for (const PersonOptions& person : {kBox, kFlat}) {
+  for (const PersonOptions& person : {kBox, kCylinder, kFlat}) {
     EXPECT_TRUE(PersonBox(level, {0, 5}, person));
     EXPECT_FALSE(PersonBox(level, {0, -5}, person));
     EXPECT_FALSE(PersonBox(level, {std::nan(""), 5}, person));
@@ -140,6 +188,50 @@ TEST(PersonBox, IsNoneForAFlatFigureStraightBelow) {
   EXPECT_FALSE(PersonBox(above, {2, 3}, kFlat));
   EXPECT_TRUE(PersonBox(above, {2, 3}, kBox));
   EXPECT_TRUE(PersonBox(above, {2, 3.5}, kFlat));
+}
+
+TEST(PersonFromBox, InvertsPersonBox) {
+  for (const bool distorted : {false, true}) {
+    for (PersonOptions person : {kBox, kCylinder, kFlat}) {
+      int inverted = 0, seen = 0;
+      ForRandomViews(200, distorted, person,
+                     [&](const Camera& camera, const Vector2d& foot, const PixelBox& box) {
+                       // Steeper than this the footprint hides the height.
+                       const double away = (foot - camera.center_m().head<2>()).norm();
+                       if (away < camera.center_m().z() || away > 40) return;
+                       ++seen;
+                       const auto found = PersonFromBox(camera, box, person.shape);
+                       if (!found) return;
+                       ++inverted;
+                       PersonOptions again = person;
+                       again.width_m = found->width_m;
+                       again.height_m = found->height_m;
+                       const PixelBox redrawn = PersonBox(camera, found->foot_m, again).value();
+                       EXPECT_NEAR(redrawn.min_x, box.min_x, 1e-3 * box.width());
+                       EXPECT_NEAR(redrawn.max_y, box.max_y, 1e-3 * box.height());
+                       EXPECT_NEAR(found->width_m, 0.6, 0.02);
+                       EXPECT_NEAR(found->height_m, 1.8, 0.04);
+                       EXPECT_NEAR((found->foot_m - foot).norm(), 0, 0.04 + 0.004 * away);
+                     });
+      EXPECT_GT(seen, 50);
+      EXPECT_GE(inverted, 0.98 * seen);
+    }
+  }
+}
+
+TEST(PersonFromBox, IsNoneWhereNobodyCanStand) {
+  const PinholeModel lens{.fx_px = 500, .fy_px = 500, .cx_px = 383.5, .cy_px = 287.5};
+  const Camera level = Camera::Create(kSize, lens, LookAt({0, 0, 1}, {0, 1, 1})).value();
+  const Camera above = Camera::Create(kSize, lens, LookAt({0, 0, 8}, {0, 1e-3, 0})).value();
+  using Shape = PersonOptions::Shape;
+  for (const Shape shape : {Shape::kBox, Shape::kCylinder, Shape::kFlat}) {
+    EXPECT_FALSE(PersonFromBox(level, {300, 100, 320, 200}, shape));  // ends above the horizon
+    EXPECT_FALSE(PersonFromBox(level, {300, 300, 300, 400}, shape));  // empty
+    EXPECT_FALSE(PersonFromBox(level, {std::nan(""), 300, 320, 400}, shape));
+    EXPECT_FALSE(PersonFromBox(level, {300, 300, 320, INFINITY}, shape));
+  }
+  // A square of the footprint's own size seen from above: no height is left.
+  EXPECT_FALSE(PersonFromBox(above, {300, 300, 340, 320}, Shape::kCylinder));
 }
 
 TEST(PersonOptions, AreChecked) {
