@@ -35,8 +35,10 @@ void PrintSceneReport(const Flags& flags, const Scene& scene, const MapsResult& 
     nlohmann::ordered_json json = {{"frames", report.frames},
                                    {"cameras", scene.cameras.size()},
                                    {"cells", result.maps.grid.count()},
+                                   {"person", JsonOf(report.person, scene)},
                                    {"iterations_mean", report.mean_iterations},
                                    {"not_converged", report.frames_not_converged},
+                                   {"pictures_missing", report.pictures_missing},
                                    {"area_cells", report.area_cells},
                                    {"area_cells_unseen", report.unseen_area_cells},
                                    {"extension", JsonOf(report.extension, scene)},
@@ -64,6 +66,10 @@ void PrintSceneReport(const Flags& flags, const Scene& scene, const MapsResult& 
   rows.insert(rows.end(), extension.begin(), extension.end());
   rows.push_back(
       {"area unseen", fmt::format("{} of {} cells", report.unseen_area_cells, report.area_cells)});
+  rows.push_back({"person", TextOf(report.person)});
+  if (report.pictures_missing > 0) {
+    rows.push_back({"pictures missing", fmt::to_string(report.pictures_missing)});
+  }
   rows.push_back({"iterations", fmt::format("{:.1f} per frame", report.mean_iterations)});
   rows.push_back({"frames not converged", fmt::to_string(report.frames_not_converged)});
   rows.push_back({"seconds", fmt::format("{:.2f}", seconds)});

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "command.h"
 #include "vantage/base/file.h"
@@ -25,14 +26,25 @@ struct Flags {
   OptionFlags render, person;
 };
 
-/// Where `vantage track` found its scene, from the record that it left in its output folder.
-Status ReadSummary(const fs::path& path, fs::path& scene, fs::path& data) {
+/// What `vantage track` recorded of a run in its output folder.
+struct RunRecord {
+  fs::path scene, data;
+  /// Size of a person as used.
+  std::optional<double> width_m, height_m;
+};
+
+Result<RunRecord> ReadSummary(const fs::path& path) {
   auto text = ReadTextFile(path);
   if (!text) return Fail("{}; name the scene by --scene", text.error().message);
   const auto json = nlohmann::json::parse(*text, nullptr, false);
   const auto text_at = [&](const char* key) -> const std::string* {
     if (!json.is_object() || !json.contains(key)) return nullptr;
     return json[key].get_ptr<const std::string*>();
+  };
+  const auto length_at = [&](const char* field) -> std::optional<double> {
+    const nlohmann::json::json_pointer pointer(fmt::format("/options/person/{}", field));
+    if (!json.contains(pointer) || !json[pointer].is_number()) return std::nullopt;
+    return json[pointer].get<double>();
   };
   const std::string* scene_text = text_at("scene");
   const std::string* data_text = text_at("data");
@@ -42,9 +54,10 @@ Status ReadSummary(const fs::path& path, fs::path& scene, fs::path& data) {
         "--scene",
         path.string());
   }
-  scene = *scene_text;
-  data = *data_text;
-  return {};
+  return RunRecord{.scene = *scene_text,
+                   .data = *data_text,
+                   .width_m = length_at("width"),
+                   .height_m = length_at("height")};
 }
 
 /// Narrows the scene's frames to those that the flags ask for.
@@ -79,16 +92,16 @@ Result<std::vector<SyncedSource>> OpenSources(const Scene& scene) {
 }
 
 Status Run(const Flags& flags, const CommonFlags& common) {
-  fs::path scene_path = flags.scene;
-  fs::path data = flags.data;
-  if (scene_path.empty()) {
-    fs::path recorded_data;
-    VANTAGE_RETURN_IF_ERROR(
-        ReadSummary(fs::path(flags.run) / "summary.json", scene_path, recorded_data));
-    if (data.empty()) data = recorded_data;
+  RunRecord run{.scene = flags.scene, .data = flags.data, .width_m = {}, .height_m = {}};
+  if (run.scene.empty()) {
+    VANTAGE_ASSIGN_OR_RETURN(run, ReadSummary(fs::path(flags.run) / "summary.json"));
+    if (!flags.data.empty()) run.data = flags.data;
   }
-  VANTAGE_ASSIGN_OR_RETURN(Scene scene, LoadScene(scene_path, data));
+  VANTAGE_ASSIGN_OR_RETURN(Scene scene, LoadScene(run.scene, run.data));
   flags.person.ApplyTo(scene.person);
+  if (!scene.person.width_m) scene.person.width_m = run.width_m;
+  if (!scene.person.height_m) scene.person.height_m = run.height_m;
+  VANTAGE_RETURN_IF_ERROR(ValidateOptions(scene.person, "person"));
   VANTAGE_RETURN_IF_ERROR(NarrowFrames(flags, scene));
   const fs::path tracks_path =
       flags.tracks.empty() ? fs::path(flags.run) / "tracks.csv" : fs::path(flags.tracks);
@@ -143,7 +156,7 @@ Command RenderCommand() {
         app.add_option("--frames", flags->frames, "Frames to render; default: to the end")
             ->check(CLI::PositiveNumber);
         flags->render = AddOptionFlags(app, RenderOptions{}, "", "Render");
-        flags->person = AddOptionFlags(app, PersonOptions{}, "person-", "Person");
+        flags->person = AddOptionFlags(app, PersonSpec{}, "person-", "Person");
         return [flags](const CommonFlags& common) { return Run(*flags, common); };
       }};
 }

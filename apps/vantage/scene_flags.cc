@@ -9,7 +9,7 @@ CLI::Option* SceneFlags::DefineUpToOccupancy(CLI::App& app, const std::string& o
   app.add_option("--data", data_,
                  "Folder that paths in the scene are relative to; default: the scene's own");
   grid_ = AddOptionFlags(app, GridOptions{}, "", "Grid");
-  person_ = AddOptionFlags(app, PersonOptions{}, "person-", "Person");
+  person_ = AddOptionFlags(app, PersonSpec{}, "person-", "Person");
   background_ = AddOptionFlags(app, BackgroundOptions{}, "background-", "Background");
   hold_ = AddOptionFlags(app, HoldOptions{}, "hold-", "Hold");
   occupancy_ = AddOptionFlags(app, OccupancyOptions{}, occupancy_prefix, "Occupancy");

@@ -49,6 +49,7 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
       {"grid", fmt::format("{} x {} cells of {} m", result.maps.grid.columns, result.maps.grid.rows,
                            result.maps.grid.cell_m)},
       {"area", fmt::format("{:.1f} m^2", scene.area.area_m2())},
+      {"person", TextOf(maps.person)},
   };
   const std::vector<ReportRow> extension = ExtensionRows(maps.extension, scene);
   rows.insert(rows.end(), extension.begin(), extension.end());

@@ -13,6 +13,18 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+constexpr OptionInfo kWidth = {"width", "m", "breadth of a person"};
+constexpr OptionInfo kHeight = {"height", "m", "height of a person"};
+constexpr Range kWidthRange = {.low = 0.05, .high = 5};
+constexpr Range kHeightRange = {.low = 0.1, .high = 5};
+
+void VisitShape(PersonOptions::Shape& shape, OptionVisitor& v) {
+  v.Choice({"shape", "", "box (square base), cylinder, or flat (faces the camera)"}, shape,
+           {{"box", PersonOptions::Shape::kBox},
+            {"cylinder", PersonOptions::Shape::kCylinder},
+            {"flat", PersonOptions::Shape::kFlat}});
+}
+
 constexpr std::size_t kCirclePoints = 16;
 
 /// Points of the figure's footprint; its outline at the top is the same.
@@ -100,12 +112,26 @@ std::optional<Vector2d> GroundBelow(const Camera& camera, const PixelBox& box) {
 }  // namespace
 
 void VisitOptions(PersonOptions& o, OptionVisitor& v) {
-  v.Number({"width", "m", "breadth of a person"}, o.width_m, Range::Between(0.05, 5));
-  v.Number({"height", "m", "height of a person"}, o.height_m, Range::Between(0.1, 5));
-  v.Choice({"shape", "", "box (square base), cylinder, or flat (faces the camera)"}, o.shape,
-           {{"box", PersonOptions::Shape::kBox},
-            {"cylinder", PersonOptions::Shape::kCylinder},
-            {"flat", PersonOptions::Shape::kFlat}});
+  v.Number(kWidth, o.width_m, kWidthRange);
+  v.Number(kHeight, o.height_m, kHeightRange);
+  VisitShape(o.shape, v);
+}
+
+void VisitOptions(PersonSpec& o, OptionVisitor& v) {
+  v.NumberOr(kWidth, o.width_m, "auto", kWidthRange);
+  v.NumberOr(kHeight, o.height_m, "auto", kHeightRange);
+  VisitShape(o.shape, v);
+}
+
+PersonOptions PersonSpec::Or(double open_width_m, double open_height_m) const {
+  return {.width_m = width_m.value_or(open_width_m),
+          .height_m = height_m.value_or(open_height_m),
+          .shape = shape};
+}
+
+PersonOptions PersonSpec::OrDefault() const {
+  const PersonOptions standard;
+  return Or(standard.width_m, standard.height_m);
 }
 
 std::optional<PixelBox> PersonBox(const Camera& camera, const Vector2d& foot_m,

@@ -24,6 +24,21 @@ struct PersonOptions {
 };
 void VisitOptions(PersonOptions& options, OptionVisitor& visitor);
 
+/// The person that a scene asks for (table [person]): the same ranges; a length that is not given
+/// ("auto") is found from the recording.
+struct PersonSpec {
+  std::optional<double> width_m;
+  std::optional<double> height_m;
+  PersonOptions::Shape shape = PersonOptions().shape;
+
+  bool IsGiven() const { return width_m && height_m; }
+  /// With these lengths where the spec leaves them open.
+  PersonOptions Or(double open_width_m, double open_height_m) const;
+  /// With the lengths of PersonOptions where the spec leaves them open.
+  PersonOptions OrDefault() const;
+};
+void VisitOptions(PersonSpec& options, OptionVisitor& visitor);
+
 /// Axis-parallel rectangle in pixels, real-valued, not clipped to the picture; max > min.
 struct PixelBox {
   double min_x = 0;

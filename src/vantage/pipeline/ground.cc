@@ -28,12 +28,13 @@ std::int64_t Ground::UnseenAreaCells() const {
                                });
 }
 
-Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options) {
+Result<Ground> LayOutGround(const Scene& scene, const PersonOptions& person,
+                            const OccupancyOptions& options) {
   Ground ground;
   std::vector<Camera> cameras;
   for (const SceneCamera& camera : scene.cameras) cameras.push_back(camera.camera);
   VANTAGE_ASSIGN_OR_RETURN(ground.extension, ChooseExtension(scene.area, scene.grid, cameras,
-                                                             scene.person, options.visibility));
+                                                             person, options.visibility));
   VANTAGE_ASSIGN_OR_RETURN(
       ground.grid, GroundGrid::Cover(scene.area, scene.grid.cell_m, ground.extension.extension()));
   const auto cells = static_cast<std::size_t>(ground.grid.count());
@@ -49,8 +50,8 @@ Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options)
     const cv::Mat informative = camera.blind.empty() ? cv::Mat() : cv::Mat(camera.blind == 0);
     VANTAGE_ASSIGN_OR_RETURN(
         CameraView view,
-        BuildView(camera.camera, ground.grid, scene.person, options.visibility,
-                  Reduction(camera.camera, ground.grid, scene.person, options), informative));
+        BuildView(camera.camera, ground.grid, person, options.visibility,
+                  Reduction(camera.camera, ground.grid, person, options), informative));
     ground.views.push_back(std::move(view));
   }
   ground.visible = VisibleCells(ground.views);

@@ -31,8 +31,10 @@ struct Ground {
   std::int64_t UnseenAreaCells() const;
 };
 
-/// Cuts area and extension into cells. Fails when no cell's centre is inside the area (cells too
-/// large for it) and when no camera sees any cell of the area.
-Result<Ground> LayOutGround(const Scene& scene, const OccupancyOptions& options);
+/// Cuts area and extension into cells; `person` is the scene's with every length known. Fails when
+/// no cell's centre is inside the area (cells too large for it) and when no camera sees any cell of
+/// the area.
+Result<Ground> LayOutGround(const Scene& scene, const PersonOptions& person,
+                            const OccupancyOptions& options);
 
 }  // namespace vantage

@@ -72,7 +72,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
 
   Json& used = json["options"];
   used["grid"] = Recorded(scene.grid);
-  used["person"] = Recorded(scene.person);
+  used["person"] = Recorded(maps.person.used);
   used["background"] = Recorded(options.background);
   used["hold"] = Recorded(options.hold);
   used["occupancy"] = Recorded(options.occupancy);
@@ -101,6 +101,8 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   for (const Track& track : result.tracks) positions += track.points.size();
   counts["positions"] = positions;
 
+  json["person"] = JsonOf(maps.person, scene);
+
   Json& cameras = json["background"] = Json::object();
   for (std::size_t i = 0; i < maps.background.size(); ++i) {
     // Cameras that deliver masks learn no background.
@@ -108,6 +110,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   }
 
   Json& stages = json["stages"];
+  stages["person"] = Json{{"seconds", maps.person.seconds}};
   stages["read"] = StageJson(maps.read_secs, maps.frames);
   stages["background"] = StageJson(maps.background_secs, maps.frames);
   stages["occupancy"] = StageJson(maps.occupancy_secs, maps.frames);

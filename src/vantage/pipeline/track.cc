@@ -70,7 +70,8 @@ class FrameBatch {
 class Feedback {
  public:
   /// None when nothing is to be held, or no camera learns a background.
-  static Result<std::optional<Feedback>> Create(const Scene& scene, const StageOptions& options,
+  static Result<std::optional<Feedback>> Create(const Scene& scene, const PersonOptions& person,
+                                                const StageOptions& options,
                                                 const MaskStream& stream,
                                                 const OccupancyMaps& like) {
     const auto learns = [](const auto& subtractor) { return subtractor.has_value(); };
@@ -79,9 +80,9 @@ class Feedback {
     }
     std::vector<Camera> cameras;
     for (const SceneCamera& camera : scene.cameras) cameras.push_back(camera.camera);
-    VANTAGE_ASSIGN_OR_RETURN(OccupiedRegions occupied,
-                             OccupiedRegions::Create(std::move(cameras), scene.person, options.hold,
-                                                     scene.frames_per_second));
+    VANTAGE_ASSIGN_OR_RETURN(
+        OccupiedRegions occupied,
+        OccupiedRegions::Create(std::move(cameras), person, options.hold, scene.frames_per_second));
     RecentTracks recent(like, occupied.window_frames(), options.linking, options.tracks,
                         scene.doors, scene.obstacles);
     return Feedback(std::move(occupied), std::move(recent));
@@ -127,7 +128,9 @@ Status BindStages(const Scene& scene, StageOptions& options) {
 
 Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, int threads,
                                const RunControl& control, const MaskSink& mask_sink) {
-  VANTAGE_ASSIGN_OR_RETURN(Ground ground, LayOutGround(scene, options.occupancy));
+  VANTAGE_ASSIGN_OR_RETURN(PersonReport person,
+                           ResolvePerson(scene, options.background, threads, control));
+  VANTAGE_ASSIGN_OR_RETURN(Ground ground, LayOutGround(scene, person.used, options.occupancy));
   VANTAGE_ASSIGN_OR_RETURN(const OccupancySolver solver,
                            OccupancySolver::Create(ground.views, options.occupancy));
   VANTAGE_ASSIGN_OR_RETURN(MaskStream stream,
@@ -136,6 +139,7 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   MapsResult result;
   OccupancyMaps& maps = result.maps;
   MapsReport& report = result.report;
+  report.person = std::move(person);
   report.area_cells = ground.AreaCells();
   report.unseen_area_cells = ground.UnseenAreaCells();
   report.extension = ground.extension;
@@ -146,7 +150,7 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   maps.visible = std::move(ground.visible);
 
   VANTAGE_ASSIGN_OR_RETURN(std::optional<Feedback> feedback,
-                           Feedback::Create(scene, options, stream, maps));
+                           Feedback::Create(scene, person.used, options, stream, maps));
 
   const std::int64_t total = stream.frame_count().value_or(0);
   // What a frame holds must not depend on the number of threads.

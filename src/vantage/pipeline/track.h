@@ -14,6 +14,7 @@
 #include "vantage/occupancy/maps.h"
 #include "vantage/occupancy/solver.h"
 #include "vantage/pipeline/occupied.h"
+#include "vantage/pipeline/person.h"
 #include "vantage/scene/scene.h"
 #include "vantage/tracks/track.h"
 
@@ -34,6 +35,7 @@ Status BindStages(const Scene& scene, StageOptions& options);
 /// What the way from pictures to maps did.
 struct MapsReport {
   std::int64_t frames = 0;
+  PersonReport person;
   /// Fixed-point iterations per frame, and frames that used all allowed ones without settling.
   double mean_iterations = 0;
   std::int64_t frames_not_converged = 0;

@@ -70,7 +70,7 @@ translation_m = [0.0, 0.0, 11.1803399]
         cv::Mat mask = cv::Mat::zeros(240, 320, CV_8UC1);
         for (const Track& person : people) {
           const TrackPoint& point = person.points[static_cast<std::size_t>(frame)];
-          const auto box = PersonBox(camera.camera, {point.x_m, point.y_m}, scene.person).value();
+          const auto box = PersonBox(camera.camera, {point.x_m, point.y_m}, scene.person.OrDefault()).value();
           const cv::Rect rectangle(cv::Point(static_cast<int>(std::lround(box.min_x)),
                                              static_cast<int>(std::lround(box.min_y))),
                                    cv::Point(static_cast<int>(std::lround(box.max_x)),
@@ -207,9 +207,9 @@ TEST_F(TwoCameras, AreaThatNoCameraSeesIsAnError) {
   Draw({Walk(1, {-3, -2}, {3, 2})});
   Scene scene = Load();
   scene.area = Polygon::Rectangle({200, 200}, {205, 205}).value();
-  EXPECT_THAT(MessageOf(LayOutGround(scene, {})), HasSubstr("no camera sees any of the area"));
+  EXPECT_THAT(MessageOf(LayOutGround(scene, {}, {})), HasSubstr("no camera sees any of the area"));
   scene.area = Polygon::Rectangle({0, 0}, {0.1, 0.1}).value();
-  EXPECT_THAT(MessageOf(LayOutGround(scene, {})), HasSubstr("use smaller cells"));
+  EXPECT_THAT(MessageOf(LayOutGround(scene, {}, {})), HasSubstr("use smaller cells"));
 }
 
 TEST_F(TwoCameras, BlindPixelsReachTheViews) {

@@ -88,7 +88,7 @@ Composition::Composition(const Scene& scene, const RenderOptions& options)
       name_(scene.name),
       frames_per_second_(scene.frames_per_second),
       area_(scene.area),
-      figure_(scene.person),
+      figure_(scene.person.OrDefault()),
       plan_(scene, layout_.plan.size()) {
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const cv::Size size = layout_.views[i].size();

@@ -81,7 +81,7 @@ TEST(Composition, DrawsThePersonInEveryViewAndOnThePlan) {
   for (std::size_t i = 0; i < 3; ++i) {
     const cv::Rect& view = composition.layout().views[i];
     const Camera scaled = scene.cameras[i].camera.Scaled({view.width, view.height}).value();
-    const PixelBox box = PersonBox(scaled, {0.5, 0.2}, scene.person).value();
+    const PixelBox box = PersonBox(scaled, {0.5, 0.2}, scene.person.OrDefault()).value();
     cv::Mat changed;
     cv::absdiff(with(view), without(view), changed);
     EXPECT_GT(cv::norm(changed.at<cv::Vec3b>(static_cast<int>((box.min_y + box.max_y) / 2),

@@ -110,7 +110,7 @@ struct Scene {
   /// Places where nobody can stand.
   std::vector<Polygon> obstacles;
   GridOptions grid;
-  PersonOptions person;
+  PersonSpec person;
   std::vector<SceneCamera> cameras;
   StageTables stages;
   /// Every file that the scene was read from (itself and calibrations), for the record of a run.

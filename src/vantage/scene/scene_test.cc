@@ -115,7 +115,7 @@ TEST_F(SceneTest, ReadsEveryField) {
   EXPECT_EQ(scene->grid.cell_m, 0.25);
   EXPECT_EQ(scene->grid.extension_m, 1);
   EXPECT_EQ(scene->person.width_m, 0.7);
-  EXPECT_EQ(scene->person.height_m, PersonOptions().height_m);
+  EXPECT_EQ(scene->person.height_m, std::nullopt);
   EXPECT_EQ(scene->person.shape, PersonOptions::Shape::kBox);
   EXPECT_THAT(scene->inputs, ElementsAre(folder_ / "scene.toml"));
 

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/pipeline/person.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "vantage/base/file.h"
+#include "vantage/base/test_support.h"
+
+namespace vantage {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::MessageOf;
+using testing::TemporaryFolder;
+
+constexpr PersonOptions kPerson = {.width_m = 0.62, .height_m = 1.6};
+
+/// One camera and its masks of a person who walks through the area again and again.
+class OneCamera : public ::testing::Test {
+ protected:
+  explicit OneCamera(const std::string& person = "") { Write(person); }
+
+  void Write(const std::string& person) const {
+    EXPECT_TRUE(WriteTextFile(folder_ / "scene.toml", R"(
+name = "one"
+frames_per_second = 4.0
+[area]
+polygon = [[-4.0, -3.0], [4.0, -3.0], [4.0, 3.0], [-4.0, 3.0]]
+)" + person + R"(
+[[cameras]]
+name = "south"
+source = { masks = "south/%06d.png" }
+[cameras.calibration.pinhole]
+size_px = [640, 480]
+focal_px = [480.0, 480.0]
+center_px = [319.5, 239.5]
+rotation = [[1.0, 0.0, 0.0], [0.0, -0.4472136, -0.8944272], [0.0, 0.8944272, -0.4472136]]
+translation_m = [0.0, 0.0, 11.1803399]
+)"));
+  }
+
+  Scene Load() const { return LoadScene(folder_ / "scene.toml").value(); }
+
+  void Draw(int frames) const {
+    const Scene scene = Load();
+    std::filesystem::create_directories(folder_ / "south");
+    for (int frame = 0; frame < frames; ++frame) {
+      cv::Mat mask = cv::Mat::zeros(480, 640, CV_8UC1);
+      const double x_m = -3 + 6.0 * (frame % 23) / 22;
+      const PixelBox box =
+          PersonBox(scene.cameras[0].camera, {x_m, 0.03 * (frame % 17)}, kPerson).value();
+      const cv::Rect pixels(
+          cv::Point(static_cast<int>(std::ceil(box.min_x)), static_cast<int>(std::ceil(box.min_y))),
+          cv::Point(static_cast<int>(std::floor(box.max_x)) + 1,
+                    static_cast<int>(std::floor(box.max_y)) + 1));
+      mask(pixels) = 255;
+      cv::imwrite((folder_ / fmt::format("south/{:06d}.png", frame)).string(), mask);
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(OneCamera, SizeIsFoundWhereTheSceneLeavesItOpen) {
+  Draw(120);
+  const Scene scene = Load();
+  const auto report = ResolvePerson(scene, {}, 1);
+  ASSERT_TRUE(report) << MessageOf(report);
+  EXPECT_TRUE(report->found);
+  EXPECT_NEAR(report->used.width_m, 0.62, 0.04);
+  EXPECT_NEAR(report->used.height_m, 1.6, 0.05);
+  EXPECT_EQ(report->used.shape, PersonOptions().shape);
+  ASSERT_TRUE(report->measured);
+  EXPECT_EQ(report->measured->frames, 60);  // every half second
+  EXPECT_THAT(TextOf(*report), HasSubstr("measured on 60 of 60 figures"));
+  const auto json = JsonOf(*report, scene);
+  EXPECT_EQ(json["width"], report->used.width_m);
+  EXPECT_EQ(json["width_source"], "measured");
+  EXPECT_EQ(json["measured"]["cameras"]["south"]["counted"], 60);
+  // Threads do not matter.
+  const auto parallel = ResolvePerson(scene, {}, 3);
+  ASSERT_TRUE(parallel);
+  EXPECT_EQ(parallel->used.width_m, report->used.width_m);
+  EXPECT_EQ(parallel->used.height_m, report->used.height_m);
+}
+
+TEST_F(OneCamera, NoMoreIsReadThanNeeded) {
+  Draw(120);
+  const auto report = ResolvePerson(
+      Load(), {}, 1, {}, {.interval_secs = 0.25, .least_secs = 10, .enough = 50, .most_secs = 60});
+  ASSERT_TRUE(report && report->measured);
+  EXPECT_EQ(report->measured->frames, 50);
+  const auto shortest = ResolvePerson(
+      Load(), {}, 1, {}, {.interval_secs = 0.25, .least_secs = 15, .enough = 50, .most_secs = 60});
+  EXPECT_EQ(shortest.value().measured->frames, 61);  // 15 s, both ends
+  const auto longest =
+      ResolvePerson(Load(), {}, 1, {},
+                    {.interval_secs = 0.25, .least_secs = 10, .enough = 1000, .most_secs = 20});
+  EXPECT_EQ(longest.value().measured->frames, 80);
+}
+
+TEST_F(OneCamera, GivenLengthsArePreferred) {
+  Write("[person]\nheight = 2.0\n");
+  Draw(120);
+  const Scene scene = Load();
+  const auto report = ResolvePerson(scene, {}, 1);
+  ASSERT_TRUE(report) << MessageOf(report);
+  EXPECT_NEAR(report->used.width_m, 0.62, 0.04);
+  EXPECT_EQ(report->used.height_m, 2.0);
+  EXPECT_EQ(JsonOf(*report, scene)["height_source"], "given");
+}
+
+TEST_F(OneCamera, NothingIsReadWhenBothAreGiven) {
+  Write("[person]\nwidth = 0.7\nheight = 2.0\n");  // there are no masks
+  const auto report = ResolvePerson(Load(), {}, 1);
+  ASSERT_TRUE(report) << MessageOf(report);
+  EXPECT_EQ(report->used.width_m, 0.7);
+  EXPECT_FALSE(report->measured);
+  EXPECT_FALSE(report->found);
+  EXPECT_EQ(TextOf(*report), "0.70 m wide, 2.00 m high");
+}
+
+TEST_F(OneCamera, TooFewFiguresGiveTheDefaultAndSaySo) {
+  Write("[person]\nwidth = \"auto\"\nheight = \"auto\"\n");
+  Draw(20);
+  const Scene scene = Load();
+  const auto report = ResolvePerson(scene, {}, 1);
+  ASSERT_TRUE(report) << MessageOf(report);
+  EXPECT_FALSE(report->found);
+  EXPECT_EQ(report->used.width_m, PersonOptions().width_m);
+  EXPECT_EQ(report->used.height_m, PersonOptions().height_m);
+  EXPECT_THAT(TextOf(*report), HasSubstr("default: 10 figures"));
+  EXPECT_EQ(JsonOf(*report, scene)["width_source"], "default");
+}
+
+TEST_F(OneCamera, ErrorsOfTheSourcesAndCtrlCAreReported) {
+  EXPECT_THAT(MessageOf(ResolvePerson(Load(), {}, 1)), HasSubstr("camera south"));
+  Draw(3);
+  const std::atomic<bool> stop{true};
+  EXPECT_THAT(MessageOf(ResolvePerson(Load(), {}, 1, {.progress = {}, .stop = &stop})),
+              HasSubstr("interrupted"));
+}
+
+}  // namespace
+}  // namespace vantage
