@@ -27,8 +27,8 @@ void VisitOptions(PersonOptions& options, OptionVisitor& visitor);
 /// The person that a scene asks for (table [person]): the same ranges; a length that is not given
 /// ("auto") is found from the recording.
 struct PersonSpec {
-  std::optional<double> width_m;
-  std::optional<double> height_m;
+  std::optional<double> width_m = std::nullopt;
+  std::optional<double> height_m = std::nullopt;
   PersonOptions::Shape shape = PersonOptions().shape;
 
   bool IsGiven() const { return width_m && height_m; }

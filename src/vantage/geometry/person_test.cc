@@ -242,5 +242,23 @@ TEST(PersonOptions, AreChecked) {
               HasSubstr("person.height"));
 }
 
+TEST(PersonSpec, LengthsMayBeLeftOpen) {
+  EXPECT_TRUE(ValidateOptions(PersonSpec{}, "person"));
+  EXPECT_FALSE(PersonSpec{}.IsGiven());
+  EXPECT_FALSE(PersonSpec{.width_m = 0.6}.IsGiven());
+  EXPECT_TRUE((PersonSpec{.width_m = 0.6, .height_m = 1.8}.IsGiven()));
+  const PersonOptions some = PersonSpec{.width_m = 0.6, .shape = kBox.shape}.Or(0.4, 1.5);
+  EXPECT_EQ(some.width_m, 0.6);
+  EXPECT_EQ(some.height_m, 1.5);
+  EXPECT_EQ(some.shape, kBox.shape);
+  EXPECT_EQ(PersonSpec{}.OrDefault().height_m, PersonOptions().height_m);
+  for (const double wrong : {std::nan(""), HUGE_VAL, -1.0, 0.0, 50.0}) {
+    EXPECT_THAT(MessageOf(ValidateOptions(PersonSpec{.width_m = wrong}, "person")),
+                HasSubstr("person.width"));
+    EXPECT_THAT(MessageOf(ValidateOptions(PersonSpec{.height_m = wrong}, "person")),
+                HasSubstr("or \"auto\""));
+  }
+}
+
 }  // namespace
 }  // namespace vantage

@@ -85,7 +85,7 @@ RobustLength Robust(std::span<const double> sorted) {
 
 }  // namespace
 
-double PersonSizeReport::RectangleWidth_m() const { return width->value_m + 2 * width->spread_m; }
+double PersonSizeReport::RectangleWidth_m() const { return width->value_m + 2.5 * width->spread_m; }
 
 std::int64_t PersonSizeReport::TotalCounted() const {
   return std::accumulate(counted.begin(), counted.end(), std::int64_t{0});

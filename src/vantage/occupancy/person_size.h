@@ -40,9 +40,9 @@ struct PersonSizeReport {
 
   std::int64_t TotalCounted() const;
   /// Width of the rectangle that stands for a person; `width` must have a value. The usual width
-  /// and twice its spread: nine in ten people are no wider (of a normal distribution). What sticks
-  /// out of a rectangle that is too narrow is explained by a second person beside the first; a
-  /// rectangle that is too wide only costs a little evidence.
+  /// and 2.5 times its spread: 19 in 20 people are no wider (of a normal distribution). What sticks
+  /// out of a rectangle that is too narrow is explained by a second person beside the first; one
+  /// that is too wide only costs a little evidence.
   double RectangleWidth_m() const;
 };
 

@@ -70,7 +70,8 @@ translation_m = [0.0, 0.0, 11.1803399]
         cv::Mat mask = cv::Mat::zeros(240, 320, CV_8UC1);
         for (const Track& person : people) {
           const TrackPoint& point = person.points[static_cast<std::size_t>(frame)];
-          const auto box = PersonBox(camera.camera, {point.x_m, point.y_m}, scene.person.OrDefault()).value();
+          const auto box =
+              PersonBox(camera.camera, {point.x_m, point.y_m}, scene.person.OrDefault()).value();
           const cv::Rect rectangle(cv::Point(static_cast<int>(std::lround(box.min_x)),
                                              static_cast<int>(std::lround(box.min_y))),
                                    cv::Point(static_cast<int>(std::lround(box.max_x)),
