@@ -8,6 +8,7 @@
 #include <functional>
 #include <initializer_list>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,17 +28,32 @@ using Maps = std::vector<std::vector<float>>;
 /// Writes the map of one frame.
 using SolveFrame = std::function<void(const OccupancyFrame&, std::span<float>)>;
 
-enum class Method { kAuthors, kExact, kFast };
+/// kFast: the authors' evidence in the fast mode. kDefault: the fast mode with everything as users
+/// get it.
+enum class Method { kAuthors, kExact, kFast, kDefault };
+
+/// The way to the fixed point that the fast mode takes by default.
+OccupancyOptions FastOptions(OccupancyOptions options) {
+  const OccupancyOptions defaults;
+  options.mode = SolveMode::kFast;
+  options.damping = defaults.damping;
+  options.tolerance = defaults.tolerance;
+  options.stable_iterations = defaults.stable_iterations;
+  return options;
+}
 
 SolveFrame SolverOf(Method method, const OccupancyCase& problem) {
   if (method == Method::kAuthors) {
     return [authors = AuthorsPom(problem.views, problem.options)](
                const OccupancyFrame& frame, std::span<float> q) { authors.Solve(frame.masks, q); };
   }
-  const auto& views = method == Method::kExact ? problem.views : problem.fast_views;
-  return [solver = OccupancySolver::Create(views, problem.options).value()](
-             const OccupancyFrame& frame, std::span<float> q) {
-    benchmark::DoNotOptimize(solver.Solve(frame.masks, q).value());
+  const bool exact = method == Method::kExact;
+  OccupancyOptions options = problem.options;
+  if (!exact) options = FastOptions(method == Method::kDefault ? OccupancyOptions() : options);
+  const auto solver = std::make_shared<const OccupancySolver>(
+      OccupancySolver::Create(exact ? problem.views : problem.fast_views, options).value());
+  return [solver](const OccupancyFrame& frame, std::span<float> q) {
+    benchmark::DoNotOptimize(solver->Solve(frame.masks, q).value());
   };
 }
 
@@ -131,6 +147,10 @@ BENCHMARK_CAPTURE(BM_Occupancy, arena8.authors, Method::kAuthors, ArenaCase)
     ->Apply(OnOneAndTwoThreads);
 BENCHMARK_CAPTURE(BM_Occupancy, arena8.exact, Method::kExact, ArenaCase)->Apply(OnOneAndTwoThreads);
 BENCHMARK_CAPTURE(BM_Occupancy, arena8.fast, Method::kFast, ArenaCase)->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, wildtrack.default, Method::kDefault, WildtrackCase)
+    ->Apply(OnOneAndTwoThreads);
+BENCHMARK_CAPTURE(BM_Occupancy, arena8.default, Method::kDefault, ArenaCase)
+    ->Apply(OnOneAndTwoThreads);
 
 /// The fast mode in the hall; counts the time for one frame divided by `size`.
 void TimeArena(const ArenaOptions& options, double size, benchmark::State& state) {

@@ -21,9 +21,6 @@
 namespace vantage::bench {
 namespace {
 
-/// The sides of the masks of the fast mode are divided by this.
-constexpr int kFastReduction = 4;
-
 OccupancyCase Missing() {
   OccupancyCase problem;
   problem.missing = "research data is absent (VANTAGE_TEST_DATA, or ../shared/data)";
@@ -37,7 +34,7 @@ void BuildViews(const std::vector<Camera>& cameras, const PersonOptions& person,
       return BuildView(camera, problem.grid, person, Visibility::kCentre, reduction).value();
     };
     problem.views.push_back(view(1));
-    problem.fast_views.push_back(view(kFastReduction));
+    problem.fast_views.push_back(view(AutomaticReduction(camera, problem.grid, person)));
   }
 }
 

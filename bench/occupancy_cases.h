@@ -25,7 +25,7 @@ struct OccupancyCase {
   std::string missing;
   GroundGrid grid;
   /// The authors' defaults, with the `ignored` that they advise for speed.
-  OccupancyOptions options;
+  OccupancyOptions options = OriginalPomOptions();
   /// At the masks' resolution, and as the fast mode takes them.
   std::vector<CameraView> views;
   std::vector<CameraView> fast_views;

@@ -57,12 +57,14 @@ Status Explanation::Finish(const SceneSetup& setup, const MapsResult& result, in
     return Fail("--frame {}: the cameras' pictures end at frame {}", frame_,
                 scene.first_frame + result.report.frames - 1);
   }
-  VANTAGE_ASSIGN_OR_RETURN(Ground ground, LayOutGround(scene, setup.options.occupancy));
+  const PersonOptions& person = result.report.person.used;
+  VANTAGE_ASSIGN_OR_RETURN(Ground ground, LayOutGround(scene, person, setup.options.occupancy));
   VANTAGE_ASSIGN_OR_RETURN(const std::vector<cv::Mat> pictures, PicturesAt(scene, frame_, threads));
   const std::span<const float> q = result.maps.Frame(frame_ - scene.first_frame);
   VANTAGE_ASSIGN_OR_RETURN(peaks_, FindPeaks(ground.grid, q, {}));
 
-  const OccupancyPicture draw(scene, ground.grid, std::move(ground.views), ground.extension);
+  const OccupancyPicture draw(scene, person, ground.grid, std::move(ground.views),
+                              ground.extension);
   const auto write = [&](const std::string& name, const cv::Mat& picture) {
     return WritePng(folder_.temporary() / (name + ".png"), picture);
   };

@@ -216,11 +216,11 @@ TEST_F(TwoCameras, AreaThatNoCameraSeesIsAnError) {
 TEST_F(TwoCameras, BlindPixelsReachTheViews) {
   Draw({Walk(1, {-3, -2}, {3, 2})});
   Scene scene = Load();
-  const Ground whole = LayOutGround(scene, {}).value();
+  const Ground whole = LayOutGround(scene, scene.person.OrDefault(), {}).value();
   cv::Mat& blind = scene.cameras[0].blind;
   blind = cv::Mat::zeros(240, 320, CV_8UC1);
   blind.colRange(0, 160) = 255;
-  const Ground half = LayOutGround(scene, {}).value();
+  const Ground half = LayOutGround(scene, scene.person.OrDefault(), {}).value();
   EXPECT_EQ(cv::norm(half.views[0].informative, 255 - blind, cv::NORM_L1), 0);
   EXPECT_TRUE(half.views[1].informative.empty());
   EXPECT_EQ(half.views[1].rectangles, whole.views[1].rectangles);

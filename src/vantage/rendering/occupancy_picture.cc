@@ -89,10 +89,11 @@ void Caption(cv::Mat& picture, const std::vector<CaptionLine>& lines) {
 
 }  // namespace
 
-OccupancyPicture::OccupancyPicture(const Scene& scene, const GroundGrid& grid,
-                                   std::vector<CameraView> views, const ExtensionReport& extension)
+OccupancyPicture::OccupancyPicture(const Scene& scene, const PersonOptions& person,
+                                   const GroundGrid& grid, std::vector<CameraView> views,
+                                   const ExtensionReport& extension)
     : area_(scene.area),
-      figure_(scene.person),
+      figure_(person),
       scene_name_(scene.name),
       grid_(grid),
       views_(std::move(views)),

@@ -22,9 +22,10 @@ namespace vantage {
 /// camera sees of them; and what the map of one frame says (its figure 14). Pictures are CV_8UC3.
 class OccupancyPicture {
  public:
-  /// `views`: of the scene's cameras over `grid`. `extension`: what the plan says of each side.
-  OccupancyPicture(const Scene& scene, const GroundGrid& grid, std::vector<CameraView> views,
-                   const ExtensionReport& extension);
+  /// `views`: of the scene's cameras over `grid`, for people like `person`. `extension`: what the
+  /// plan says of each side.
+  OccupancyPicture(const Scene& scene, const PersonOptions& person, const GroundGrid& grid,
+                   std::vector<CameraView> views, const ExtensionReport& extension);
 
   /// From above: the area white, its extension amber with its metres, cells that nobody sees dark
   /// red, and around the ground that each camera sees a line in its colour.
