@@ -55,11 +55,14 @@ Status CheckView(const CameraView& view, std::size_t index, std::size_t cells) {
   return {};
 }
 
-/// Averages over blocks of `side` x `side` pixels, as shares of 255. The sums are whole numbers.
+/// Averages over blocks of `side` x `side` pixels, as shares of 255. The sums are whole numbers; 16
+/// bits hold that of a column of up to 257 pixels. kSide is `side` where the compiler is to know
+/// it, or 0.
+template <int kSide>
 void AverageBlocks(const cv::Mat& mask, int side, cv::Mat& image) {
-  const int width = image.cols;
+  if constexpr (kSide != 0) side = kSide;
   const float scale = 1.0F / static_cast<float>(255 * side * side);
-  std::vector<std::uint16_t> columns(static_cast<std::size_t>(width * side));
+  std::vector<std::uint16_t> columns(static_cast<std::size_t>(image.cols * side));
   for (int y = 0; y < image.rows; ++y) {
     std::fill(columns.begin(), columns.end(), std::uint16_t{0});
     for (int row = y * side; row < (y + 1) * side; ++row) {
@@ -69,10 +72,9 @@ void AverageBlocks(const cv::Mat& mask, int side, cv::Mat& image) {
       }
     }
     float* const out = image.ptr<float>(y);
-    const std::uint16_t* column = columns.data();
-    for (int x = 0; x < width; ++x, column += side) {
+    for (int x = 0; x < image.cols; ++x) {
       int sum = 0;
-      for (int i = 0; i < side; ++i) sum += column[i];
+      for (int i = 0; i < side; ++i) sum += columns[static_cast<std::size_t>(x * side + i)];
       out[x] = static_cast<float>(sum) * scale;
     }
   }
@@ -82,13 +84,24 @@ void AverageBlocks(const cv::Mat& mask, int side, cv::Mat& image) {
 cv::Mat Reduced(const cv::Mat& mask, ImageSize size) {
   cv::Mat image(size.height, size.width, CV_32FC1);
   const int side = mask.cols / size.width;
-  // 16 bits hold the sum of a column of 256 pixels.
-  if (side <= 256 && side * size.width == mask.cols && side * size.height == mask.rows) {
-    AverageBlocks(mask, side, image);
-  } else {
+  if (side > 257 || side * size.width != mask.cols || side * size.height != mask.rows) {
     cv::Mat shares;
     mask.convertTo(shares, CV_32F, 1.0 / 255);
     cv::resize(shares, image, image.size(), 0, 0, cv::INTER_AREA);
+    return image;
+  }
+  switch (side) {
+    case 2:
+      AverageBlocks<2>(mask, side, image);
+      break;
+    case 4:
+      AverageBlocks<4>(mask, side, image);
+      break;
+    case 8:
+      AverageBlocks<8>(mask, side, image);
+      break;
+    default:
+      AverageBlocks<0>(mask, side, image);
   }
   return image;
 }

@@ -23,62 +23,55 @@ constexpr double kMinCover = 1e-4;
 /// rise.
 constexpr double kNothing = 0.1;
 
-/// Rows of floats for a picture, with one row more below; all 0.
-class Rows {
- public:
-  Rows(ImageSize size, std::size_t stride)
-      : values_(hwy::AllocateAligned<float>(stride * Count(size))) {
-    std::fill_n(values_.get(), stride * Count(size), 0.0F);
-  }
-  float* data() { return values_.get(); }
-  const float* data() const { return values_.get(); }
-
- private:
-  static std::size_t Count(ImageSize size) { return static_cast<std::size_t>(size.height) + 1; }
-  hwy::AlignedFreeUniquePtr<float[]> values_;
-};
-
 /// One camera's part of a frame.
 class CameraFrame {
  public:
   CameraFrame(const Problem& problem, std::size_t camera)
       : options_(problem.options),
         camera_(problem.cameras[camera]),
-        foreground_(problem.foreground[camera].image),
-        stride_((static_cast<std::size_t>(camera_.size.width) + kColumns - 1) / kColumns *
-                kColumns),
-        difference_(camera_.size, stride_),
-        covered_(camera_.size, stride_),
-        sum_m_(camera_.size, stride_) {}
+        foreground_(problem.foreground[camera].image) {}
 
   /// Adds to each cell what the camera's word counts, and that times the share of the rectangle
-  /// that is foreground.
+  /// that is foreground (to half a percent: it only decides which cells are looked at).
   void AddForegroundShares(std::vector<double>& words, std::vector<double>& shares) const {
-    cv::Mat_<double> sums;
-    cv::integral(foreground_, sums, CV_64F);
+    cv::Mat percent;
+    foreground_.convertTo(percent, CV_8U, 100);
+    cv::Mat_<int> sums;
+    cv::integral(percent, sums, CV_32S);
     for (const CameraCells::Cell& c : camera_.cells) {
       const cv::Rect& r = c.rectangle;
-      const double sum = sums(r.y + r.height, r.x + r.width) - sums(r.y + r.height, r.x) -
-                         sums(r.y, r.x + r.width) + sums(r.y, r.x);
+      const int* const top = sums[r.y] + r.x;
+      const int* const bottom = sums[r.y + r.height] + r.x;
+      const int sum = bottom[r.width] - bottom[0] - top[r.width] + top[0];
       const auto cell = static_cast<std::size_t>(c.cell);
       words[cell] += static_cast<double>(c.weight);
-      shares[cell] += static_cast<double>(c.weight) * sum / r.area();
+      shares[cell] += static_cast<double>(c.weight) * sum / (100.0 * r.area());
     }
   }
 
   /// `slots`: the place of each cell among those that are iterated, negative for the others.
   void Take(const std::vector<int>& slots) {
+    std::vector<const CameraCells::Cell*> taken;
     for (const CameraCells::Cell& c : camera_.cells) {
-      const int slot = slots[static_cast<std::size_t>(c.cell)];
-      if (slot < 0) continue;
-      const cv::Rect& r = c.rectangle;
-      const std::size_t top =
-          static_cast<std::size_t>(r.y) * stride_ + static_cast<std::size_t>(r.x);
-      const std::size_t bottom = top + static_cast<std::size_t>(r.height) * stride_;
-      cells_.push_back({slot, r.width, top, bottom, static_cast<double>(r.area()),
-                        static_cast<double>(c.weight)});
+      if (slots[static_cast<std::size_t>(c.cell)] >= 0) taken.push_back(&c);
     }
-    FindRuns(slots);
+    const std::vector<std::size_t> run_of = FindRuns(taken);
+    for (const CameraCells::Cell* c : taken) {
+      const cv::Rect& r = c->rectangle;
+      Cell& cell = cells_.emplace_back();
+      cell.slot = slots[static_cast<std::size_t>(c->cell)];
+      cell.area = r.area();
+      cell.weight = static_cast<double>(c->weight);
+      cell.first_piece = pieces_.size();
+      for (int block = r.x / kColumns; block <= (r.x + r.width - 1) / kColumns; ++block) {
+        const int left = std::max(r.x - block * kColumns, 0);
+        const int right = std::min(r.x + r.width - block * kColumns, kColumns);
+        const Run& run = runs_[run_of[BlockRow(block, r.y)]];
+        const std::size_t top = run.begin + Floats(r.y - run.top) + static_cast<std::size_t>(left);
+        pieces_.push_back({top, top + Floats(r.height), right - left});
+      }
+      cell.pieces = pieces_.size() - cell.first_piece;
+    }
     FillImages();
   }
 
@@ -88,145 +81,182 @@ class CameraFrame {
                   [&](const Cell& c) { return iterated[static_cast<std::size_t>(c.slot)] == 0; });
   }
 
-  /// `log_cover`: of each slot, the logarithm of its absence as M sees it; `cover`: that absence.
-  /// Adds w r to the scores.
+  /// `cover`: of each slot, its absence as M and r see it; `log_cover`: its logarithm, 0 for a cell
+  /// that is left out of M. Adds w r to the scores.
   void AddScores(const std::vector<float>& log_cover, const std::vector<double>& cover,
                  std::vector<double>& scores) {
     for (const Cell& c : cells_) {
       const float log_n = log_cover[static_cast<std::size_t>(c.slot)];
       if (log_n == 0) continue;
-      float* const top = difference_.data() + c.top;
-      float* const bottom = difference_.data() + c.bottom;
-      for (int x = 0; x < c.width; ++x) top[x] += log_n;
-      for (int x = 0; x < c.width; ++x) bottom[x] -= log_n;
-    }
-    const bool picture = options_.evidence == Evidence::kPicture;
-    const CoverImages images{
-        stride_,         difference_.data(),
-        covered_.data(), second_.empty() ? nullptr : second_.front().data(),
-        sum_m_.data(),   sum_second_.empty() ? nullptr : sum_second_.front().data()};
-    for (const ColumnRun& run : runs_) SumCovered(run, images);
-    if (picture) {
-      AddPictureScores(cover, scores);
-    } else {
-      for (const Cell& c : cells_) {
-        const auto slot = static_cast<std::size_t>(c.slot);
-        scores[slot] += c.weight * options_.worth * BoxSum(sum_m_, c) / (cover[slot] * c.area);
+      for (const Piece& piece : PiecesOf(c)) {
+        float* const top = difference_.get() + piece.top;
+        float* const bottom = difference_.get() + piece.bottom;
+        for (int x = 0; x < piece.width; ++x) top[x] += log_n;
+        for (int x = 0; x < piece.width; ++x) bottom[x] -= log_n;
       }
+    }
+    for (const Run& run : runs_) {
+      SumCovered({.rows = run.bottom - run.top,
+                  .difference = difference_.get() + run.begin,
+                  .first = first_.get() + run.begin,
+                  .second = second_ ? second_.get() + run.begin : nullptr,
+                  .sum_first = sum_first_.get() + run.begin,
+                  .sum_second = second_ ? sum_second_.get() + run.begin : nullptr});
+    }
+    if (second_) {
+      AddPictureScores(cover, scores);
+      return;
+    }
+    for (const Cell& c : cells_) {
+      const auto slot = static_cast<std::size_t>(c.slot);
+      scores[slot] += c.weight * options_.worth * BoxSum(sum_first_, c) / (cover[slot] * c.area);
     }
   }
 
  private:
+  /// Rows [top, bottom) of kColumns columns of the picture; `begin`: where its floats begin.
+  struct Run {
+    int block;
+    int top, bottom;
+    std::size_t begin;
+  };
+  /// The part of a rectangle in one run: where its row and the row below it begin.
+  struct Piece {
+    std::size_t top, bottom;
+    int width;
+  };
   struct Cell {
     int slot;
-    int width;
-    std::size_t top, bottom;  // where the row of the rectangle and the row below it begin
+    std::size_t first_piece, pieces;
     double area;
     double weight;
   };
+  using FloatArray = hwy::AlignedFreeUniquePtr<float[]>;
 
-  double BoxSum(const Rows& sums, const Cell& c) const {
-    const float* const top = sums.data() + c.top;
-    const float* const bottom = sums.data() + c.bottom;
+  static std::size_t Floats(int rows) { return static_cast<std::size_t>(rows) * kColumns; }
+
+  std::size_t BlockRow(int block, int y) const {
+    return static_cast<std::size_t>(block) * (static_cast<std::size_t>(camera_.size.height) + 1) +
+           static_cast<std::size_t>(y);
+  }
+
+  std::span<const Piece> PiecesOf(const Cell& c) const {
+    return std::span(pieces_).subspan(c.first_piece, c.pieces);
+  }
+
+  double BoxSum(const FloatArray& sums, const Cell& c) const {
     float sum = 0;
-    for (int x = 0; x < c.width; ++x) sum += bottom[x] - top[x];
+    for (const Piece& piece : PiecesOf(c)) {
+      const float* const top = sums.get() + piece.top;
+      const float* const bottom = sums.get() + piece.bottom;
+      for (int x = 0; x < piece.width; ++x) sum += bottom[x] - top[x];
+    }
     return static_cast<double>(sum);
   }
 
-  /// The runs of columns that the rectangles of the iterated cells touch.
-  void FindRuns(const std::vector<int>& slots) {
-    const auto rows = static_cast<std::size_t>(camera_.size.height) + 1;
-    std::vector<int> begun(stride_ / kColumns * rows, 0);  // rectangles that begin less end
-    for (const CameraCells::Cell& c : camera_.cells) {
-      if (slots[static_cast<std::size_t>(c.cell)] < 0) continue;
-      const cv::Rect& r = c.rectangle;
+  /// The runs of columns that the rectangles touch. Returns the run of each BlockRow that is in
+  /// one.
+  std::vector<std::size_t> FindRuns(const std::vector<const CameraCells::Cell*>& cells) {
+    const int blocks = (camera_.size.width + kColumns - 1) / kColumns;
+    std::vector<int> begun(BlockRow(blocks, 0), 0);  // rectangles that begin less those that end
+    for (const CameraCells::Cell* c : cells) {
+      const cv::Rect& r = c->rectangle;
       for (int block = r.x / kColumns; block <= (r.x + r.width - 1) / kColumns; ++block) {
-        int* const column = begun.data() + static_cast<std::size_t>(block) * rows;
-        ++column[r.y];
-        --column[r.y + r.height];
+        ++begun[BlockRow(block, r.y)];
+        --begun[BlockRow(block, r.y + r.height)];
       }
     }
-    for (std::size_t block = 0; block < stride_ / kColumns; ++block) {
+    std::vector<std::size_t> run_of(begun.size(), 0);
+    for (int block = 0; block < blocks; ++block) {
       int open = 0;
-      for (std::size_t y = 0; y < rows; ++y) {
+      for (int y = 0; y <= camera_.size.height; ++y) {
         const int before = open;
-        open += begun[block * rows + y];
+        open += begun[BlockRow(block, y)];
         if (before == 0 && open > 0) {
-          runs_.push_back({static_cast<int>(block) * kColumns, static_cast<int>(y), 0});
+          runs_.push_back({block, y, y, floats_});
         } else if (before > 0 && open == 0) {
-          runs_.back().bottom = static_cast<int>(y);
+          runs_.back().bottom = y;
+          floats_ += Floats(y + 1 - runs_.back().top);
         }
+        if (open > 0) run_of[BlockRow(block, y)] = runs_.size() - 1;
       }
     }
+    return run_of;
   }
 
-  /// What M is multiplied by where it is summed. Evidence "person" needs one sum only: that of
-  /// M (B - background_cost (w - B)).
+  FloatArray Zeros() const {
+    FloatArray floats = hwy::AllocateAligned<float>(std::max<std::size_t>(floats_, kColumns));
+    std::fill_n(floats.get(), floats_, 0.0F);
+    return floats;
+  }
+
+  /// What M is multiplied by where it is summed: for evidence "picture" the informative share w and
+  /// the foreground B, for evidence "person" only B - background_cost (w - B).
   void FillImages() {
     const bool picture = options_.evidence == Evidence::kPicture;
+    difference_ = Zeros();
+    first_ = Zeros();
+    sum_first_ = Zeros();
     if (picture) {
-      second_.emplace_back(camera_.size, stride_);
-      sum_second_.emplace_back(camera_.size, stride_);
+      second_ = Zeros();
+      sum_second_ = Zeros();
+      sum_b_ = cv::sum(foreground_)[0];
     }
+    outside_m_ = camera_.pixels;
+    outside_b_ = sum_b_;
     const auto cost = static_cast<float>(options_.background_cost);
-    for (const ColumnRun& run : runs_) {
-      const int end = std::min(run.x + kColumns, camera_.size.width);
+    for (const Run& run : runs_) {
+      const int left = run.block * kColumns;
+      const int width = std::min(kColumns, camera_.size.width - left);
       for (int y = run.top; y < run.bottom; ++y) {
-        const float* const b = foreground_.ptr<float>(y);
-        const float* const w =
-            camera_.informative_share.empty() ? nullptr : camera_.informative_share.ptr<float>(y);
-        float* const first = covered_.data() + static_cast<std::size_t>(y) * stride_;
-        for (int x = run.x; x < end; ++x) {
+        const std::size_t at = run.begin + Floats(y - run.top);
+        const float* const b = foreground_.ptr<float>(y) + left;
+        const float* const w = camera_.informative_share.empty()
+                                   ? nullptr
+                                   : camera_.informative_share.ptr<float>(y) + left;
+        for (int x = 0; x < width; ++x) {
           const float share = w == nullptr ? 1.0F : w[x];
-          first[x] = picture ? share : b[x] - cost * (share - b[x]);
+          first_[at + static_cast<std::size_t>(x)] = picture ? share : b[x] - cost * (share - b[x]);
+          if (!picture) continue;
+          second_[at + static_cast<std::size_t>(x)] = b[x];
           outside_m_ -= static_cast<double>(share);
           outside_b_ -= static_cast<double>(b[x]);
         }
-        if (picture) {
-          std::copy(b + run.x, b + end,
-                    second_.front().data() + static_cast<std::size_t>(y) * stride_ + run.x);
-        }
       }
     }
-    sum_b_ = cv::sum(foreground_)[0];
-    outside_m_ += camera_.pixels;
-    outside_b_ += sum_b_;
   }
 
-  /// Sum over all runs of what is left at their bottom.
-  double SumOverRuns(const Rows& sums) const {
+  /// Sum over all runs of what is left below their last row.
+  double SumOverRuns(const FloatArray& sums) const {
     double total = 0;
-    for (const ColumnRun& run : runs_) {
-      const float* const last =
-          sums.data() + static_cast<std::size_t>(run.bottom) * stride_ + run.x;
+    for (const Run& run : runs_) {
+      const float* const last = sums.get() + run.begin + Floats(run.bottom - run.top);
       for (int x = 0; x < kColumns; ++x) total += static_cast<double>(last[x]);
     }
     return total;
   }
 
   void AddPictureScores(const std::vector<double>& cover, std::vector<double>& scores) const {
-    const Rows& sum_mb = sum_second_.front();
     // Outside the runs nobody covers anything: M = 1.
     const PictureEvidence evidence(options_, camera_.pixels, sum_b_,
-                                   outside_m_ + SumOverRuns(sum_m_),
-                                   outside_b_ + SumOverRuns(sum_mb));
+                                   outside_m_ + SumOverRuns(sum_first_),
+                                   outside_b_ + SumOverRuns(sum_second_));
     for (const Cell& c : cells_) {
       const auto slot = static_cast<std::size_t>(c.slot);
-      scores[slot] += c.weight * evidence.Ratio(BoxSum(sum_m_, c), BoxSum(sum_mb, c), cover[slot]);
+      scores[slot] +=
+          c.weight * evidence.Ratio(BoxSum(sum_first_, c), BoxSum(sum_second_, c), cover[slot]);
     }
   }
 
   const OccupancyOptions& options_;
   const CameraCells& camera_;
   const cv::Mat& foreground_;
-  std::size_t stride_;
-  Rows difference_;
-  Rows covered_;  // what M is multiplied by
-  Rows sum_m_;
-  std::vector<Rows> second_;  // evidence "picture": the foreground
-  std::vector<Rows> sum_second_;
   std::vector<Cell> cells_;
-  std::vector<ColumnRun> runs_;
+  std::vector<Piece> pieces_;
+  std::vector<Run> runs_;
+  std::size_t floats_ = 0;  // of all runs
+  FloatArray difference_, first_, sum_first_;
+  FloatArray second_, sum_second_;  // evidence "picture" only
   double sum_b_ = 0;
   double outside_m_ = 0;  // sums over the pixels outside the runs
   double outside_b_ = 0;
