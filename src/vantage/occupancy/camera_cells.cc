@@ -11,6 +11,8 @@ namespace vantage::internal {
 namespace {
 
 constexpr int kMaxSide = 32768;
+/// A camera says nothing of a person of whom it sees less, in pixels of the view.
+constexpr double kMinArea = 1e-3;
 
 Status CheckView(const CameraView& view, std::size_t index, std::size_t cells) {
   if (view.rectangles.size() != cells) {
@@ -114,15 +116,22 @@ Result<CameraCells> MakeCameraCells(const CameraView& view, std::size_t index, s
   camera.mask_size = view.mask_size;
   camera.size = view.size;
   camera.pixels = static_cast<double>(view.size.width) * view.size.height;
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    const float weight = view.weights.empty() ? 1.0F : view.weights[cell];
-    if (view.rectangles[cell].empty() || weight == 0) continue;
-    camera.cells.push_back({static_cast<CellIndex>(cell), view.rectangles[cell], weight});
-  }
+  cv::Mat_<double> sums;
   if (!view.informative.empty()) {
     camera.informative = view.informative > 0;
     camera.informative_share = Reduced(camera.informative, view.size);
     camera.pixels = cv::sum(camera.informative_share)[0];
+    cv::integral(camera.informative_share, sums, CV_64F);
+  }
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const cv::Rect& r = view.rectangles[cell];
+    const float weight = view.weights.empty() ? 1.0F : view.weights[cell];
+    if (r.empty() || weight == 0) continue;
+    const double area = sums.empty()
+                            ? r.area()
+                            : sums(r.y + r.height, r.x + r.width) - sums(r.y + r.height, r.x) -
+                                  sums(r.y, r.x + r.width) + sums(r.y, r.x);
+    if (area > kMinArea) camera.cells.push_back({static_cast<CellIndex>(cell), r, weight, area});
   }
   return camera;
 }

@@ -17,6 +17,7 @@ struct CameraCells {
     CellIndex cell;
     cv::Rect rectangle;  // not empty, inside the picture
     float weight;        // what the camera's word counts for the cell, 0 to 1
+    double area;         // informative pixels of the rectangle
   };
   ImageSize mask_size;
   ImageSize size;

@@ -121,7 +121,7 @@ class ExactSolver {
           (sums_[bottom_right] - sums_[bottom_left]) - (sums_[top_right] - sums_[top_left]);
       const double n = states_.absence(cell);
       const double r = problem_.options.evidence == Evidence::kPerson
-                           ? person.Ratio(sum.m, sum.mb, n, c.rectangle.area())
+                           ? person.Ratio(sum.m, sum.mb, n, c.area)
                            : picture.Ratio(sum.m, sum.mb, n);
       score_[cell] += static_cast<double>(c.weight) * r;
     }

@@ -40,6 +40,45 @@ void SumColumns(std::size_t at, const CoverRun& run) {
   hn::Store(hn::Zero(d), d, run.difference + at);
 }
 
+/// The lanes of the vector that begins at column `lane` which are in [left, right).
+HWY_INLINE hn::Mask<DF> ColumnsOf(const CoverPiece& piece, std::size_t lane) {
+  const DF d;
+  const auto within = [&](std::size_t column) {
+    return hn::FirstN(d, column > lane ? column - lane : 0);
+  };
+  return hn::AndNot(within(piece.left), within(piece.right));
+}
+
+void AddPiecesOnTarget(std::span<const CoverPiece> pieces, const float* HWY_RESTRICT values,
+                       float* HWY_RESTRICT difference) {
+  const DF d;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (values[i] == 0) continue;
+    const V value = hn::Set(d, values[i]);
+    for (std::size_t lane = 0; lane < kColumns; lane += hn::Lanes(d)) {
+      const V add = hn::IfThenElseZero(ColumnsOf(pieces[i], lane), value);
+      float* const top = difference + pieces[i].top + lane;
+      float* const bottom = difference + pieces[i].bottom + lane;
+      hn::Store(hn::Add(hn::Load(d, top), add), d, top);
+      hn::Store(hn::Sub(hn::Load(d, bottom), add), d, bottom);
+    }
+  }
+}
+
+void SumPiecesOnTarget(std::span<const CoverPiece> pieces, const float* HWY_RESTRICT sums,
+                       float* HWY_RESTRICT out) {
+  const DF d;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    V sum = hn::Zero(d);
+    for (std::size_t lane = 0; lane < kColumns; lane += hn::Lanes(d)) {
+      const V gained = hn::Sub(hn::Load(d, sums + pieces[i].bottom + lane),
+                               hn::Load(d, sums + pieces[i].top + lane));
+      sum = hn::Add(sum, hn::IfThenElseZero(ColumnsOf(pieces[i], lane), gained));
+    }
+    out[i] = hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+}
+
 void SumCoveredOnTarget(const CoverRun& run) {
   for (std::size_t lane = 0; lane < kColumns; lane += hn::Lanes(DF())) {
     if (run.second == nullptr) {
@@ -57,7 +96,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vantage::internal {
 
+HWY_EXPORT(AddPiecesOnTarget);
+HWY_EXPORT(SumPiecesOnTarget);
 HWY_EXPORT(SumCoveredOnTarget);
+
+void AddPieces(std::span<const CoverPiece> pieces, const float* values, float* difference) {
+  HWY_DYNAMIC_DISPATCH(AddPiecesOnTarget)(pieces, values, difference);
+}
+
+void SumPieces(std::span<const CoverPiece> pieces, const float* sums, float* out) {
+  HWY_DYNAMIC_DISPATCH(SumPiecesOnTarget)(pieces, sums, out);
+}
 
 void SumCovered(const CoverRun& run) { HWY_DYNAMIC_DISPATCH(SumCoveredOnTarget)(run); }
 

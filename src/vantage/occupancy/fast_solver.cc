@@ -22,6 +22,7 @@ constexpr double kMinCover = 1e-4;
 /// A cell whose presence is below this share of its prior covers nothing, and is out if it does not
 /// rise.
 constexpr double kNothing = 0.1;
+constexpr double kWorthTakingAgain = 0.7;
 
 /// One camera's part of a frame.
 class CameraFrame {
@@ -45,12 +46,17 @@ class CameraFrame {
       const int sum = bottom[r.width] - bottom[0] - top[r.width] + top[0];
       const auto cell = static_cast<std::size_t>(c.cell);
       words[cell] += static_cast<double>(c.weight);
-      shares[cell] += static_cast<double>(c.weight) * sum / (100.0 * r.area());
+      shares[cell] += static_cast<double>(c.weight) * sum / (100 * c.area);
     }
   }
 
-  /// `slots`: the place of each cell among those that are iterated, negative for the others.
+  /// `slots`: the place of each cell among those that are iterated, negative for the others. May be
+  /// called again when there are fewer.
   void Take(const std::vector<int>& slots) {
+    cells_.clear();
+    pieces_.clear();
+    runs_.clear();
+    floats_ = 0;
     std::vector<const CameraCells::Cell*> taken;
     for (const CameraCells::Cell& c : camera_.cells) {
       if (slots[static_cast<std::size_t>(c.cell)] >= 0) taken.push_back(&c);
@@ -58,43 +64,30 @@ class CameraFrame {
     const std::vector<std::size_t> run_of = FindRuns(taken);
     for (const CameraCells::Cell* c : taken) {
       const cv::Rect& r = c->rectangle;
-      Cell& cell = cells_.emplace_back();
-      cell.slot = slots[static_cast<std::size_t>(c->cell)];
-      cell.area = r.area();
-      cell.weight = static_cast<double>(c->weight);
-      cell.first_piece = pieces_.size();
+      const std::size_t pieces_before = pieces_.size();
       for (int block = r.x / kColumns; block <= (r.x + r.width - 1) / kColumns; ++block) {
         const int left = std::max(r.x - block * kColumns, 0);
         const int right = std::min(r.x + r.width - block * kColumns, kColumns);
         const Run& run = runs_[run_of[BlockRow(block, r.y)]];
-        const std::size_t top = run.begin + Floats(r.y - run.top) + static_cast<std::size_t>(left);
-        pieces_.push_back({top, top + Floats(r.height), right - left});
+        const std::size_t top = run.begin + Floats(r.y - run.top);
+        pieces_.push_back({static_cast<std::uint32_t>(top),
+                           static_cast<std::uint32_t>(top + Floats(r.height)),
+                           static_cast<std::uint8_t>(left), static_cast<std::uint8_t>(right)});
       }
-      cell.pieces = pieces_.size() - cell.first_piece;
+      cells_.push_back({static_cast<std::size_t>(slots[static_cast<std::size_t>(c->cell)]),
+                        pieces_.size() - pieces_before, static_cast<double>(c->weight), c->area});
     }
+    values_.resize(pieces_.size());
     FillImages();
-  }
-
-  /// Drops the cells whose slot is no longer iterated.
-  void Keep(const std::vector<std::uint8_t>& iterated) {
-    std::erase_if(cells_,
-                  [&](const Cell& c) { return iterated[static_cast<std::size_t>(c.slot)] == 0; });
   }
 
   /// `cover`: of each slot, its absence as M and r see it; `log_cover`: its logarithm, 0 for a cell
   /// that is left out of M. Adds w r to the scores.
   void AddScores(const std::vector<float>& log_cover, const std::vector<double>& cover,
                  std::vector<double>& scores) {
-    for (const Cell& c : cells_) {
-      const float log_n = log_cover[static_cast<std::size_t>(c.slot)];
-      if (log_n == 0) continue;
-      for (const Piece& piece : PiecesOf(c)) {
-        float* const top = difference_.get() + piece.top;
-        float* const bottom = difference_.get() + piece.bottom;
-        for (int x = 0; x < piece.width; ++x) top[x] += log_n;
-        for (int x = 0; x < piece.width; ++x) bottom[x] -= log_n;
-      }
-    }
+    float* value = values_.data();
+    for (const Cell& c : cells_) value = std::fill_n(value, c.pieces, log_cover[c.slot]);
+    AddPieces(pieces_, values_.data(), difference_.get());
     for (const Run& run : runs_) {
       SumCovered({.rows = run.bottom - run.top,
                   .difference = difference_.get() + run.begin,
@@ -105,11 +98,8 @@ class CameraFrame {
     }
     if (second_) {
       AddPictureScores(cover, scores);
-      return;
-    }
-    for (const Cell& c : cells_) {
-      const auto slot = static_cast<std::size_t>(c.slot);
-      scores[slot] += c.weight * options_.worth * BoxSum(sum_first_, c) / (cover[slot] * c.area);
+    } else {
+      AddPersonScores(cover, scores);
     }
   }
 
@@ -120,16 +110,11 @@ class CameraFrame {
     int top, bottom;
     std::size_t begin;
   };
-  /// The part of a rectangle in one run: where its row and the row below it begin.
-  struct Piece {
-    std::size_t top, bottom;
-    int width;
-  };
   struct Cell {
-    int slot;
-    std::size_t first_piece, pieces;
-    double area;
+    std::size_t slot;
+    std::size_t pieces;  // consecutive ones, after those of the cells before
     double weight;
+    double area;
   };
   using FloatArray = hwy::AlignedFreeUniquePtr<float[]>;
 
@@ -138,20 +123,6 @@ class CameraFrame {
   std::size_t BlockRow(int block, int y) const {
     return static_cast<std::size_t>(block) * (static_cast<std::size_t>(camera_.size.height) + 1) +
            static_cast<std::size_t>(y);
-  }
-
-  std::span<const Piece> PiecesOf(const Cell& c) const {
-    return std::span(pieces_).subspan(c.first_piece, c.pieces);
-  }
-
-  double BoxSum(const FloatArray& sums, const Cell& c) const {
-    float sum = 0;
-    for (const Piece& piece : PiecesOf(c)) {
-      const float* const top = sums.get() + piece.top;
-      const float* const bottom = sums.get() + piece.bottom;
-      for (int x = 0; x < piece.width; ++x) sum += bottom[x] - top[x];
-    }
-    return static_cast<double>(sum);
   }
 
   /// The runs of columns that the rectangles touch. Returns the run of each BlockRow that is in
@@ -236,15 +207,33 @@ class CameraFrame {
     return total;
   }
 
-  void AddPictureScores(const std::vector<double>& cover, std::vector<double>& scores) const {
+  void AddPersonScores(const std::vector<double>& cover, std::vector<double>& scores) {
+    SumPieces(pieces_, sum_first_.get(), values_.data());
+    const float* value = values_.data();
+    for (const Cell& c : cells_) {
+      float sum = 0;
+      for (std::size_t i = 0; i < c.pieces; ++i) sum += *value++;
+      scores[c.slot] +=
+          c.weight * options_.worth * static_cast<double>(sum) / (cover[c.slot] * c.area);
+    }
+  }
+
+  void AddPictureScores(const std::vector<double>& cover, std::vector<double>& scores) {
     // Outside the runs nobody covers anything: M = 1.
     const PictureEvidence evidence(options_, camera_.pixels, sum_b_,
                                    outside_m_ + SumOverRuns(sum_first_),
                                    outside_b_ + SumOverRuns(sum_second_));
+    second_values_.resize(values_.size());
+    SumPieces(pieces_, sum_first_.get(), values_.data());
+    SumPieces(pieces_, sum_second_.get(), second_values_.data());
+    std::size_t piece = 0;
     for (const Cell& c : cells_) {
-      const auto slot = static_cast<std::size_t>(c.slot);
-      scores[slot] +=
-          c.weight * evidence.Ratio(BoxSum(sum_first_, c), BoxSum(sum_second_, c), cover[slot]);
+      double m = 0, mb = 0;
+      for (const std::size_t end = piece + c.pieces; piece < end; ++piece) {
+        m += static_cast<double>(values_[piece]);
+        mb += static_cast<double>(second_values_[piece]);
+      }
+      scores[c.slot] += c.weight * evidence.Ratio(m, mb, cover[c.slot]);
     }
   }
 
@@ -252,7 +241,9 @@ class CameraFrame {
   const CameraCells& camera_;
   const cv::Mat& foreground_;
   std::vector<Cell> cells_;
-  std::vector<Piece> pieces_;
+  std::vector<CoverPiece> pieces_;
+  std::vector<float> values_;  // one a piece
+  std::vector<float> second_values_;
   std::vector<Run> runs_;
   std::size_t floats_ = 0;  // of all runs
   FloatArray difference_, first_, sum_first_;
@@ -279,7 +270,6 @@ class FastSolver {
     for (std::size_t slot = 0; slot < chosen_.size() && !problem_.previous.empty(); ++slot) {
       states.StartAt(slot, static_cast<double>(problem_.previous[chosen_[slot]]));
     }
-    iterated_.assign(chosen_.size(), 1);
     cover_.resize(chosen_.size());
     log_cover_.resize(chosen_.size());
     SolveReport report;
@@ -301,13 +291,14 @@ class FastSolver {
   void ChooseCells() {
     std::vector<double> words(problem_.priors.size(), 0.0), shares(words);
     for (const CameraFrame& camera : cameras_) camera.AddForegroundShares(words, shares);
-    std::vector<int> slots(words.size(), -1);
+    slots_.assign(words.size(), -1);
     for (std::size_t cell = 0; cell < words.size(); ++cell) {
       if (words[cell] == 0 || shares[cell] < kMinForeground * words[cell]) continue;
-      slots[cell] = static_cast<int>(chosen_.size());
+      slots_[cell] = static_cast<int>(chosen_.size());
       chosen_.push_back(cell);
     }
-    for (CameraFrame& camera : cameras_) camera.Take(slots);
+    left_ = taken_ = chosen_.size();
+    for (CameraFrame& camera : cameras_) camera.Take(slots_);
   }
 
   /// Returns the largest change of a cell.
@@ -321,18 +312,21 @@ class FastSolver {
     scores_.assign(chosen_.size(), 0.0);
     for (CameraFrame& camera : cameras_) camera.AddScores(log_cover_, cover_, scores_);
     double change = 0;
-    bool gave_way = false;
     for (std::size_t slot = 0; slot < chosen_.size(); ++slot) {
-      if (iterated_[slot] == 0) continue;
+      int& place = slots_[chosen_[slot]];
+      if (place < 0) continue;
       const double before = states.absence(slot);
       change = std::max(change, states.Step(slot, scores_[slot]));
       if (1 - before < Nothing(slot) && states.absence(slot) >= before) {
-        iterated_[slot] = 0;
-        gave_way = true;
+        place = -1;
+        --left_;
       }
     }
-    if (gave_way) {
-      for (CameraFrame& camera : cameras_) camera.Keep(iterated_);
+    // What is out covers nothing and is skipped; now and then it is worth looking where the rest
+    // is.
+    if (static_cast<double>(left_) < kWorthTakingAgain * static_cast<double>(taken_)) {
+      for (CameraFrame& camera : cameras_) camera.Take(slots_);
+      taken_ = left_;
     }
     return change;
   }
@@ -342,7 +336,9 @@ class FastSolver {
   const Problem& problem_;
   std::vector<CameraFrame> cameras_;
   std::vector<std::size_t> chosen_;  // cell of each slot
-  std::vector<std::uint8_t> iterated_;
+  std::vector<int> slots_;           // of each cell, negative: not iterated
+  std::size_t left_ = 0;             // cells that are still iterated
+  std::size_t taken_ = 0;            // cells that the cameras look at
   std::vector<double> cover_;
   std::vector<float> log_cover_;
   std::vector<double> scores_;

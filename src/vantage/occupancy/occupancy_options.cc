@@ -47,6 +47,7 @@ OccupancyOptions OriginalPomOptions() {
   OccupancyOptions options;
   options.evidence = Evidence::kPicture;
   options.mode = SolveMode::kExact;
+  options.prior = 0.01;
   options.damping = Damping::kFixed;
   options.tolerance = 1e-4;
   options.stable_iterations = 5;

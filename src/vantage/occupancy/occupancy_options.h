@@ -33,7 +33,7 @@ struct OccupancyOptions {
   Evidence evidence = Evidence::kPerson;
   SolveMode mode = SolveMode::kFast;
   /// Probability that a cell is occupied before anything is seen, 0 < prior < 1.
-  double prior = 0.01;
+  double prior = 0.003;
   /// Evidence "person": what a wholly seen person whom nobody else explains is worth in one camera,
   /// natural logarithm, 0 < worth <= 1000.
   double worth = 40;

@@ -87,6 +87,10 @@ RobustLength Robust(std::span<const double> sorted) {
 
 double PersonSizeReport::RectangleWidth_m() const { return width->value_m + 2.5 * width->spread_m; }
 
+double PersonSizeReport::RectangleHeight_m() const {
+  return height->value_m + 1.5 * height->spread_m;
+}
+
 std::int64_t PersonSizeReport::TotalCounted() const {
   return std::accumulate(counted.begin(), counted.end(), std::int64_t{0});
 }

@@ -44,6 +44,9 @@ struct PersonSizeReport {
   /// out of a rectangle that is too narrow is explained by a second person beside the first; one
   /// that is too wide only costs a little evidence.
   double RectangleWidth_m() const;
+  /// Height of that rectangle; `height` must have a value. The usual height and 1.5 times its
+  /// spread, for silhouettes lose feet and heads more often than they gain any.
+  double RectangleHeight_m() const;
 };
 
 /// Measures people in masks, so that the rectangles of the occupancy stage have the size that

@@ -76,7 +76,7 @@ ImageSize ReducedSize(ImageSize size, double reduction) {
 }
 
 int AutomaticReduction(const Camera& camera, const GroundGrid& grid, const PersonOptions& person) {
-  constexpr double kMinWidth_px = 4;
+  constexpr double kMinWidth_px = 5;
   constexpr int kLargest = 16;
   std::vector<double> widths_px;
   for (CellIndex cell = 0; cell < grid.count(); ++cell) {
@@ -88,8 +88,12 @@ int AutomaticReduction(const Camera& camera, const GroundGrid& grid, const Perso
   if (widths_px.empty()) return 1;
   const auto quarter = widths_px.begin() + static_cast<std::ptrdiff_t>(widths_px.size() / 4);
   std::nth_element(widths_px.begin(), quarter, widths_px.end());
+  const auto [width_px, height_px] = camera.size();
   int reduction = 1;
-  while (reduction < kLargest && *quarter / (2 * reduction) >= kMinWidth_px) reduction *= 2;
+  for (int side = 2; side <= kLargest; ++side) {
+    const bool divides = width_px % side == 0 && height_px % side == 0;
+    if (divides && *quarter / side >= kMinWidth_px) reduction = side;
+  }
   return reduction;
 }
 

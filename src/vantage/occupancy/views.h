@@ -43,9 +43,8 @@ struct CameraView {
 /// Size of a picture whose sides are divided by `reduction` (>= 1) and rounded, at least 1 px.
 ImageSize ReducedSize(ImageSize size, double reduction);
 
-/// The largest power of two up to 16 by which the sides of the masks may be divided so that in at
-/// least three quarters of the cells that `camera` sees a person stays 4 pixels wide; 1 when it
-/// sees none.
+/// The largest number up to 16 that divides both sides of the masks and leaves a person at least 5
+/// pixels wide in three quarters of the cells that `camera` sees; 1 when there is none.
 int AutomaticReduction(const Camera& camera, const GroundGrid& grid, const PersonOptions& person);
 
 /// The view of `camera` (of the size that its masks have) over `grid`, in masks reduced by

@@ -54,7 +54,7 @@ Result<PersonReport> ResolvePerson(const Scene& scene, const BackgroundOptions& 
   if (report.measured->width) {
     report.found = true;
     report.used =
-        scene.person.Or(report.measured->RectangleWidth_m(), report.measured->height->value_m);
+        scene.person.Or(report.measured->RectangleWidth_m(), report.measured->RectangleHeight_m());
   }
   report.seconds = stopwatch.Seconds();
   return report;
