@@ -11,7 +11,8 @@
 
 namespace vantage::internal {
 
-/// A view as the solvers take it: only the cells that the camera speaks for.
+/// A view as the solvers take it: only the cells that the camera speaks for and of whose rectangles
+/// it sees anything.
 struct CameraCells {
   struct Cell {
     CellIndex cell;

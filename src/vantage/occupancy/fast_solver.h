@@ -10,8 +10,9 @@ namespace vantage::internal {
 
 /// The same fixed point, of the part of the problem that matters:
 ///
-/// 1. Only cells that the foreground can raise are iterated: those of whose rectangles, averaged
-///    over the cameras that speak for the cell, at least a quarter is foreground. (Where nobody
+/// 1. Only cells that the foreground can raise are iterated: those of the informative
+///    part of whose rectangles, averaged over the cameras that speak for the cell, at least a
+///    quarter is foreground. (Where nobody
 ///    else covers anything, evidence "person" needs a share of cost / (1 + cost) to be positive,
 ///    which is 0.26 at the default.) Nobody stands in the others: q = 0. A cell that has fallen to
 ///    a tenth of its prior and does not rise is out as well.

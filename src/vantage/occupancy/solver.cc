@@ -60,6 +60,11 @@ Result<SolveReport> OccupancySolver::Solve(std::span<const cv::Mat> masks, std::
   if (!previous.empty() && previous.size() != cell_count()) {
     return Fail("the map to begin at has {} cells; the grid has {}", previous.size(), cell_count());
   }
+  for (const float presence : previous) {
+    if (!(presence >= 0 && presence <= 1)) {
+      return Fail("a cell of the map to begin at is {}; it must be between 0 and 1", presence);
+    }
+  }
   if (masks.size() != cameras_.size()) {
     return Fail("{} masks are given for {} cameras", masks.size(), cameras_.size());
   }

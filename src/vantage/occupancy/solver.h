@@ -78,8 +78,8 @@ class OccupancySolver {
   /// one mask for each view, CV_8UC1 of the view's mask_size, 0 background to 255 foreground;
   /// values between are soft evidence. An empty cv::Mat: that camera has no picture now and is left
   /// out. `previous`: none, or a map to begin at (the iteration has several fixed points and finds
-  /// one near its start). Fails, naming the camera by its index, when a mask has another type or
-  /// size. Thread-safe.
+  /// one near its start). Fails when `previous` has a value outside [0, 1], or, naming the camera
+  /// by its index, when a mask has another type or size. Thread-safe.
   Result<SolveReport> Solve(std::span<const cv::Mat> masks, std::span<float> q,
                             std::span<const float> previous = {}) const;
 
