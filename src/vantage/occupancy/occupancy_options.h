@@ -66,7 +66,7 @@ struct OccupancyOptions {
   Visibility visibility = Visibility::kCentre;
   /// The sides of a mask are divided by this before use (exact area averages),
   /// 1 <= reduction <= 64; none: as AutomaticReduction says in the fast mode, 1 in the exact one.
-  std::optional<double> reduction;
+  std::optional<double> reduction = std::nullopt;
 };
 void VisitOptions(OccupancyOptions& options, OptionVisitor& visitor);
 
