@@ -74,7 +74,7 @@ TEST(MakeForeground, CountsNoBlindPixel) {
     EXPECT_LT(LargestDifference(camera.informative_share, share), 2e-6);
     EXPECT_NEAR(camera.pixels, cv::sum(share)[0], 1e-3);
     for (const CameraCells::Cell& c : camera.cells) {
-      EXPECT_NEAR(c.informative, cv::mean(share(c.rectangle))[0], 1e-5);
+      EXPECT_NEAR(c.area, cv::sum(share(c.rectangle))[0], 1e-4);
     }
     const cv::Mat mask = RandomMask(random, view.mask_size, false);
     cv::Mat_<double> b;

@@ -32,9 +32,9 @@ class CameraFrame {
         camera_(problem.cameras[camera]),
         foreground_(problem.foreground[camera].image) {}
 
-  /// Adds to each cell what the camera's word counts, times the share of the rectangle that is
-  /// informative, and times the share that is foreground (to half a percent: it only decides which
-  /// cells are looked at).
+  /// Adds to each cell what the camera's word counts, and that times the share of the rectangle's
+  /// informative pixels that is foreground (to half a percent: it only decides which cells are
+  /// looked at).
   void AddForegroundShares(std::vector<double>& words, std::vector<double>& shares) const {
     cv::Mat percent;
     foreground_.convertTo(percent, CV_8U, 100);

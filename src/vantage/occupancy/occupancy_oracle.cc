@@ -61,11 +61,13 @@ void AddScores(const OccupancyProblem& problem, std::size_t camera, const std::v
   for (std::size_t i = 0; i < n.size(); ++i) {
     if (!speaks_for(i)) continue;
     const cv::Rect& a = view.rectangles[i];
+    const double area = Sum(picture.share(a));
+    if (area == 0) continue;
     const double box_m = Sum(mw(a)), box_mb = Sum(mb(a));
     double r = 0;
     if (o.evidence == Evidence::kPerson) {
-      r = o.worth / a.area() * (box_mb - o.background_cost * (box_m - box_mb)) / n[i];
-    } else if (pixels > 0) {
+      r = o.worth / area * (box_mb - o.background_cost * (box_m - box_mb)) / n[i];
+    } else {
       const double l = 1 - 1 / n[i];
       const double absent_surface = std::max(s + l * box_m, 1e-6 * pixels);
       r = log_likelihood((d + box_m - 2 * box_mb) / (s + box_m)) -

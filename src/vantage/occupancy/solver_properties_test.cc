@@ -123,7 +123,8 @@ TEST_P(SolverProperties, WithoutAnyPictureTheAnswerIsThePrior) {
   OccupancyProblem problem = Scene(Hall(3, {60, 40}, 0.5), 3);
   for (cv::Mat& mask : problem.masks) mask = cv::Mat();
   SolveReport report;
-  EXPECT_THAT(Solve(problem, &report), ::testing::Each(::testing::FloatEq(0.01F)));
+  EXPECT_THAT(Solve(problem, &report),
+              ::testing::Each(::testing::FloatEq(static_cast<float>(OccupancyOptions().prior))));
   EXPECT_EQ(report.cameras_left_out, 3);
   for (std::size_t i = 0; i < problem.views[0].rectangles.size(); ++i) {
     problem.priors.push_back(random_.Real(0.001, 0.5));
