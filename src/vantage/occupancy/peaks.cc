@@ -63,17 +63,19 @@ Result<std::vector<Peak>> FindPeaks(const GroundGrid& grid, std::span<const floa
   std::stable_sort(candidates.begin(), candidates.end(),
                    [&](CellIndex a, CellIndex b) { return At(q, a) > At(q, b); });
   const double longest = std::max(grid.columns, grid.rows);
+  // A position between cells is less than a cell from its cell's centre.
   const int reach =
-      static_cast<int>(std::min(std::ceil(options.distance_m / grid.cell_m), longest));
+      static_cast<int>(std::min(std::ceil(options.distance_m / grid.cell_m) + 1, longest));
   std::vector<std::uint8_t> taken(q.size(), 0);
   std::vector<Peak> peaks;
   for (const CellIndex cell : candidates) {
     if (taken[static_cast<std::size_t>(cell)] != 0) continue;
-    const Eigen::Vector2d center_m = grid.Center(cell);
-    peaks.push_back({cell, options.refine ? Refined(grid, q, cell) : center_m, At(q, cell)});
+    const Eigen::Vector2d position_m = options.refine ? Refined(grid, q, cell) : grid.Center(cell);
+    peaks.push_back({cell, position_m, At(q, cell)});
+    // From the position: a person between two cells may raise both to the same probability.
     ForNeighbours(grid, cell, reach, [&](CellIndex other) {
       // Cells at exactly the distance stay free whatever the rounding of their centres.
-      if ((grid.Center(other) - center_m).norm() < options.distance_m - 1e-9) {
+      if ((grid.Center(other) - position_m).norm() < options.distance_m - 1e-9) {
         taken[static_cast<std::size_t>(other)] = 1;
       }
     });

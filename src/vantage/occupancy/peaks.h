@@ -17,8 +17,8 @@ namespace vantage {
 struct PeakOptions {
   /// Cells with a smaller probability are no detections, 0 < threshold <= 1.
   double threshold = 0.5;
-  /// Detections are at least this far apart (between their cells' centres), in metres,
-  /// 0 <= distance <= 100.
+  /// The cell's centre of a detection is at least this far from the position of every stronger
+  /// one, in metres, 0 <= distance <= 100.
   double distance_m = 0.5;
   /// Position between cells: the mean of the cell's and its eight neighbours' centres, weighted by
   /// their probabilities. Otherwise the cell's centre.
