@@ -9,6 +9,8 @@
 #include <random>
 
 #include "vantage/base/test_support.h"
+#include "vantage/occupancy/solver.h"
+#include "vantage/occupancy/test_problems.h"
 
 namespace vantage {
 namespace {
@@ -77,6 +79,64 @@ TEST(FindPeaks, PropertiesOnRandomMaps) {
     // The strongest cell is always found.
     EXPECT_EQ(peaks.front().probability, *std::max_element(q.begin(), q.end()));
   }
+}
+
+/// Errors of the positions of people anywhere in a hall that four cameras see.
+struct PositionErrors {
+  int people = 0, found = 0, detections = 0;
+  double mean_m = 0;
+};
+
+PositionErrors MeasurePositions(const OccupancyOptions& options, double cell_m, bool refine) {
+  const testing::Hall hall(4, {320, 240}, cell_m);
+  testing::RandomNumbers random(77);
+  const OccupancySolver solver = *OccupancySolver::Create(hall.Views(), options);
+  std::vector<float> q(solver.cell_count());
+  PositionErrors errors;
+  for (int round = 0; round < 80; ++round) {
+    const std::vector<Eigen::Vector2d> people_m = hall.People(random, 3, 1.2);
+    EXPECT_TRUE(solver.Solve(hall.Silhouettes(people_m), q));
+    const std::vector<Peak> peaks = *FindPeaks(hall.grid, q, {.refine = refine});
+    errors.detections += static_cast<int>(peaks.size());
+    for (const Eigen::Vector2d& person_m : people_m) {
+      ++errors.people;
+      double nearest_m = 1e9;
+      for (const Peak& peak : peaks) {
+        nearest_m = std::min(nearest_m, (peak.position_m - person_m).norm());
+      }
+      if (nearest_m > 0.6) continue;
+      ++errors.found;
+      errors.mean_m += nearest_m;
+    }
+  }
+  errors.mean_m /= errors.found;
+  return errors;
+}
+
+TEST(FindPeaks, PositionsOfPeopleAreMuchFinerThanTheCells) {
+  for (const Evidence evidence : {Evidence::kPerson, Evidence::kPicture}) {
+    for (const double cell_m : {0.5, 0.25}) {
+      const OccupancyOptions options{.evidence = evidence};
+      const PositionErrors refined = MeasurePositions(options, cell_m, true);
+      const PositionErrors centres = MeasurePositions(options, cell_m, false);
+      EXPECT_GT(refined.people, 230);
+      EXPECT_GE(refined.found, 0.99 * refined.people);
+      EXPECT_NEAR(refined.detections, refined.people, 0.02 * refined.people) << "one for each";
+      EXPECT_LT(refined.mean_m, 0.32 * cell_m);
+      EXPECT_LT(refined.mean_m, 0.8 * centres.mean_m);
+    }
+  }
+}
+
+TEST(FindPeaks, PersonBetweenTwoCellsIsOneDetection) {
+  const std::vector<float> q = Map({{kGrid.Index(3, 2), 1.0F}, {kGrid.Index(4, 2), 1.0F}});
+  const auto peaks = *FindPeaks(kGrid, q, {});
+  ASSERT_EQ(peaks.size(), 1U);
+  EXPECT_TRUE(peaks[0].position_m.isApprox(Eigen::Vector2d(1.0, 3.25)));
+  // Two people beyond the distance are two, whatever is between them.
+  const std::vector<float> three =
+      Map({{kGrid.Index(2, 2), 1.0F}, {kGrid.Index(3, 2), 1.0F}, {kGrid.Index(4, 2), 1.0F}});
+  EXPECT_EQ(FindPeaks(kGrid, three, {})->size(), 2U);
 }
 
 TEST(FindPeaks, RefusesWhatDoesNotFit) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <opencv2/core.hpp>
 
 #include "vantage/base/test_support.h"
@@ -89,6 +90,83 @@ TEST(BuildView, RulesDecideWhichCellsAreVisible) {
   EXPECT_GT(ground_only + centre_only, 0);
 }
 
+TEST(BuildView, ContinuousWeighsACellByTheShareThatIsInThePicture) {
+  const Camera camera = TestCamera();
+  const GroundGrid grid = Grid(20, 0.5);
+  const CameraView view = *BuildView(camera, grid, {}, Visibility::kContinuous, 1);
+  const CameraView complete = *BuildView(camera, grid, {}, Visibility::kComplete, 1);
+  const CameraView centre = *BuildView(camera, grid, {}, Visibility::kCentre, 1);
+  EXPECT_THAT(complete.weights, ::testing::IsEmpty());
+  ASSERT_EQ(view.weights.size(), view.rectangles.size());
+  int partly = 0, less_than_half = 0;
+  for (CellIndex cell = 0; cell < grid.count(); ++cell) {
+    const auto i = static_cast<std::size_t>(cell);
+    const float weight = view.weights[i];
+    ASSERT_GE(weight, 0);
+    ASSERT_LE(weight, 1);
+    if (!complete.rectangles[i].empty()) {
+      EXPECT_NEAR(weight, 1, 1e-6);
+    }
+    if (!centre.rectangles[i].empty()) {
+      EXPECT_EQ(view.rectangles[i], centre.rectangles[i]);
+    }
+    if (view.rectangles[i].empty()) continue;
+    // The share of a fine grid of points over the rectangle.
+    const PixelBox box = *PersonBox(camera, grid.Center(cell), {});
+    constexpr int kPoints = 100;
+    int inside = 0;
+    for (int k = 0; k < kPoints * kPoints; ++k) {
+      inside += camera.InPicture({box.min_x + (k % kPoints + 0.5) / kPoints * box.width(),
+                                  box.min_y + (k / kPoints + 0.5) / kPoints * box.height()});
+    }
+    EXPECT_NEAR(weight, static_cast<double>(inside) / (kPoints * kPoints), 0.011);
+    partly += weight < 1 - 1e-6F;
+    less_than_half += weight < 0.5F;
+  }
+  EXPECT_GT(partly, 50);
+  EXPECT_GT(less_than_half, 10);
+}
+
+TEST(AutomaticReduction, KeepsMostPeopleFourPixelsWide) {
+  const Camera camera = TestCamera();
+  const GroundGrid grid = Grid(6, 0.5);
+  int last = 0;
+  for (const double width_m : {0.05, 0.2, 0.5, 1.0, 2.0, 5.0}) {
+    const PersonOptions person{.width_m = width_m};
+    const int reduction = AutomaticReduction(camera, grid, person);
+    EXPECT_GE(reduction, std::max(last, 1)) << "wider people bear more";
+    EXPECT_LE(reduction, 16);
+    last = reduction;
+    if (reduction == 1) continue;
+    const CameraView view = *BuildView(camera, grid, person, Visibility::kCentre, reduction);
+    int cells = 0, wide = 0;
+    for (const cv::Rect& r : view.rectangles) {
+      // A clipped rectangle says nothing of the person's width.
+      if (r.empty() || r.x == 0 || r.x + r.width == view.size.width) continue;
+      ++cells;
+      wide += r.width >= 3;  // a breadth of 4 holds 3 to 5 centres of pixels
+    }
+    EXPECT_GE(wide, 0.75 * cells);
+  }
+  EXPECT_GT(last, 4);
+}
+
+TEST(AutomaticReduction, IsTwiceAsMuchInPicturesOfTwiceTheSize) {
+  const GroundGrid grid = Grid(6, 0.5);
+  int last = 0;
+  for (int scale = 1; scale <= 64; scale *= 2) {
+    const Camera camera = *TestCamera().Scaled({320 * scale, 240 * scale});
+    const int reduction = AutomaticReduction(camera, grid, {});
+    if (last != 0) {
+      EXPECT_EQ(reduction, std::min(2 * last, 16));
+    }
+    last = reduction;
+  }
+  EXPECT_EQ(last, 16);
+  EXPECT_EQ(AutomaticReduction(*TestCamera().Scaled({32, 24}), grid, {}), 1);
+  EXPECT_EQ(AutomaticReduction(TestCamera(), {0, -1000, 1, 10, 10}, {}), 1) << "sees no cell";
+}
+
 TEST(BuildView, ReductionScalesThePicture) {
   const Camera camera = TestCamera();
   const GroundGrid grid = Grid(4, 0.5);
@@ -162,6 +240,9 @@ TEST(BuildView, RefusesNonsense) {
 
   EXPECT_THAT(MessageOf(BuildView(TestCamera(), Grid(4, 1), {}, Visibility::kCentre, 0)),
               HasSubstr("occupancy.reduction is 0"));
+  EXPECT_THAT(MessageOf(BuildView(TestCamera(), Grid(4, 1), {}, Visibility::kCentre,
+                                  std::numeric_limits<double>::quiet_NaN())),
+              HasSubstr("occupancy.reduction is nan"));
   EXPECT_THAT(MessageOf(BuildView(TestCamera(), {}, {}, Visibility::kCentre, 1)),
               HasSubstr("no cells"));
 }
