@@ -292,9 +292,13 @@ class FastSolver {
   void ChooseCells() {
     std::vector<double> words(problem_.priors.size(), 0.0), shares(words);
     for (const CameraFrame& camera : cameras_) camera.AddForegroundShares(words, shares);
+    const double cost = problem_.options.background_cost;
+    const double least = problem_.options.evidence == Evidence::kPerson
+                             ? std::min(kMinForeground, cost / (1 + cost))
+                             : kMinForeground;
     slots_.assign(words.size(), -1);
     for (std::size_t cell = 0; cell < words.size(); ++cell) {
-      if (words[cell] == 0 || shares[cell] < kMinForeground * words[cell]) continue;
+      if (words[cell] == 0 || shares[cell] < least * words[cell]) continue;
       slots_[cell] = static_cast<int>(chosen_.size());
       chosen_.push_back(cell);
     }

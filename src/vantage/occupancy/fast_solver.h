@@ -10,12 +10,12 @@ namespace vantage::internal {
 
 /// The same fixed point, of the part of the problem that matters:
 ///
-/// 1. Only cells that the foreground can raise are iterated: those of the informative
-///    part of whose rectangles, averaged over the cameras that speak for the cell, at least a
-///    quarter is foreground. (Where nobody
-///    else covers anything, evidence "person" needs a share of cost / (1 + cost) to be positive,
-///    which is 0.26 at the default.) Nobody stands in the others: q = 0. A cell that has fallen to
-///    a tenth of its prior and does not rise is out as well.
+/// 1. Only cells that the foreground can raise are iterated: those of the informative part of whose
+///    rectangles, averaged over the cameras that speak for the cell, at least a quarter is
+///    foreground. (Where nobody else covers anything, evidence "person" needs a share of cost / (1
+///    + cost) to be positive, which is 0.26 at the default; where that is less than a quarter, it
+///    counts.) Nobody stands in the others: q = 0. A cell that has fallen to a tenth of its prior
+///    and does not rise is out as well.
 /// 2. Only pixels that the rectangles of these cells touch are computed, in runs of columns.
 /// 3. Sums go down the columns only: log M is one running sum of what rectangles add at their top
 ///    row and take away below their bottom row; a box sum is the difference of two rows, which for

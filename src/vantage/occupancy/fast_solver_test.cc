@@ -206,6 +206,17 @@ TEST(FastSolver, StaysBetweenZeroAndOneOnAnyProblem) {
   }
 }
 
+TEST(FastSolver, LooksAtAllCellsThatForegroundCanRaiseAtASmallBackgroundCost) {
+  const CameraView view{{40, 40}, {40, 40}, {cv::Rect(10, 5, 10, 30)}};
+  cv::Mat mask(40, 40, CV_8UC1, cv::Scalar(0));
+  mask(cv::Rect(10, 5, 2, 30)) = 255;  // a fifth of the rectangle
+  for (const SolveMode mode : {SolveMode::kFast, SolveMode::kExact}) {
+    EXPECT_LT(Solve({{view}, {mask}, {.mode = mode}})[0], 0.01F);
+    EXPECT_GT(Solve({{view}, {mask}, {.mode = mode, .background_cost = 0.05}})[0], 0.8F);
+    EXPECT_GT(Solve({{view}, {mask}, {.mode = mode, .background_cost = 0}})[0], 0.8F);
+  }
+}
+
 TEST(FastSolver, LooksAtTheInformativePartOfARectangle) {
   // Four fifths of the person are behind a post; what can be seen of her is foreground.
   CameraView view{{40, 40}, {40, 40}, {cv::Rect(10, 5, 10, 30), cv::Rect(12, 5, 8, 30)}};
