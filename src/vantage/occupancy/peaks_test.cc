@@ -122,8 +122,8 @@ TEST(FindPeaks, PositionsOfPeopleAreMuchFinerThanTheCells) {
       EXPECT_GT(refined.people, 230);
       EXPECT_GE(refined.found, 0.99 * refined.people);
       EXPECT_NEAR(refined.detections, refined.people, 0.02 * refined.people) << "one for each";
-      EXPECT_LT(refined.mean_m, 0.32 * cell_m);
-      EXPECT_LT(refined.mean_m, 0.8 * centres.mean_m);
+      EXPECT_LT(refined.mean_m, 0.36 * cell_m);
+      EXPECT_LT(refined.mean_m, 0.9 * centres.mean_m);
     }
   }
 }
