@@ -127,44 +127,54 @@ TEST(BuildView, ContinuousWeighsACellByTheShareThatIsInThePicture) {
   EXPECT_GT(less_than_half, 10);
 }
 
-TEST(AutomaticReduction, KeepsMostPeopleFourPixelsWide) {
-  const Camera camera = TestCamera();
-  const GroundGrid grid = Grid(6, 0.5);
-  int last = 0;
-  for (const double width_m : {0.05, 0.2, 0.5, 1.0, 2.0, 5.0}) {
-    const PersonOptions person{.width_m = width_m};
-    const int reduction = AutomaticReduction(camera, grid, person);
-    EXPECT_GE(reduction, std::max(last, 1)) << "wider people bear more";
-    EXPECT_LE(reduction, 16);
-    last = reduction;
-    if (reduction == 1) continue;
-    const CameraView view = *BuildView(camera, grid, person, Visibility::kCentre, reduction);
-    int cells = 0, wide = 0;
-    for (const cv::Rect& r : view.rectangles) {
-      // A clipped rectangle says nothing of the person's width.
-      if (r.empty() || r.x == 0 || r.x + r.width == view.size.width) continue;
-      ++cells;
-      wide += r.width >= 3;  // a breadth of 4 holds 3 to 5 centres of pixels
+/// Share of the cells that the camera sees in which a person is this wide, in pixels.
+double ShareOfCells(const Camera& camera, const GroundGrid& grid, const PersonOptions& person,
+                    double width_px) {
+  int cells = 0, wide = 0;
+  for (CellIndex cell = 0; cell < grid.count(); ++cell) {
+    const auto box = PersonBox(camera, grid.Center(cell), person);
+    if (!box || !camera.InPicture({(box->min_x + box->max_x) / 2, (box->min_y + box->max_y) / 2})) {
+      continue;
     }
-    EXPECT_GE(wide, 0.75 * cells);
+    ++cells;
+    wide += box->width() >= width_px;
   }
-  EXPECT_GT(last, 4);
+  return static_cast<double>(wide) / cells;
 }
 
-TEST(AutomaticReduction, IsAtLeastTwiceAsMuchInPicturesOfTwiceTheSize) {
+TEST(AutomaticReduction, IsTheLargestDivisorThatLeavesMostPeopleFivePixelsWide) {
+  const GroundGrid grid = Grid(6, 0.5);
+  for (const ImageSize size : {ImageSize{320, 240}, ImageSize{960, 768}, ImageSize{1920, 1080}}) {
+    const Camera camera = *TestCamera().Scaled(size);
+    int last = 1;
+    for (const double width_m : {0.05, 0.2, 0.5, 1.0, 2.0, 5.0}) {
+      const PersonOptions person{.width_m = width_m};
+      int expected = 1;
+      for (int side = 2; side <= 16; ++side) {
+        const bool divides = size.width % side == 0 && size.height % side == 0;
+        if (divides && ShareOfCells(camera, grid, person, 5 * side) > 0.75) expected = side;
+      }
+      EXPECT_EQ(AutomaticReduction(camera, grid, person), expected) << width_m;
+      EXPECT_GE(expected, last) << "wider people bear more";
+      last = expected;
+    }
+    EXPECT_GT(last, 4);
+  }
+}
+
+TEST(AutomaticReduction, GrowsWithThePictures) {
   const GroundGrid grid = Grid(6, 0.5);
   int last = 0;
   for (int scale = 1; scale <= 64; scale *= 2) {
     const Camera camera = *TestCamera().Scaled({320 * scale, 240 * scale});
     const int reduction = AutomaticReduction(camera, grid, {});
-    if (last != 0) {
-      EXPECT_GE(reduction, std::min(2 * last, 16));
-      EXPECT_LE(reduction, 16);
-    }
+    EXPECT_GE(reduction, 2 * last <= 16 ? 2 * last : last);
+    EXPECT_LE(reduction, 16);
     last = reduction;
   }
   EXPECT_EQ(last, 16);
   EXPECT_EQ(AutomaticReduction(*TestCamera().Scaled({32, 24}), grid, {}), 1);
+  EXPECT_EQ(AutomaticReduction(*TestCamera().Scaled({1021, 769}), grid, {}), 1) << "primes";
   EXPECT_EQ(AutomaticReduction(TestCamera(), {0, -1000, 1, 10, 10}, {}), 1) << "sees no cell";
 }
 
