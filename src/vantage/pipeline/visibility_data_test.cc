@@ -25,8 +25,8 @@
 #include "vantage/tracks/track_file.h"
 
 /// Tables 3 and 4 of the thesis as orders: what each rule of visibility and the extension of the
-/// area are worth, everything else by default. Prints the tables of ARCHITECTURE.md. Differences
-/// asked for are about half of those measured.
+/// area are worth, everything else by default. ARCHITECTURE.md has the figures of the whole
+/// recording. Differences asked for are about half of those measured.
 
 namespace vantage {
 namespace {
@@ -94,13 +94,19 @@ void AddDetections(const GroundGrid& grid, std::span<const float> q, FrameIndex 
   }
 }
 
-/// The boxes that a detector found in seven views, filled: all 795 frames.
+/// Half of the recording of 795 frames.
+constexpr FrameIndex kFrames = 400;
+
+/// The boxes that a detector found in seven views, filled, over the thesis's cells of 0.3 m: with
+/// larger ones the tracks of a pair side by side, seen as three, hide what the rules do.
 Outcome MeasureBoxes(Visibility rule, std::optional<double> extension_m) {
   Scene scene =
       LoadScene(std::filesystem::path(VANTAGE_SOURCE_DIR) / "examples/pets2009/seven-views.toml",
                 DataFolder() / "pets2009")
           .value();
   scene.person = {};
+  scene.frame_count = kFrames;
+  scene.grid.cell_m = 0.3;
   scene.grid.extension_m = extension_m;
   StageOptions options;
   options.occupancy.visibility = rule;
@@ -109,7 +115,11 @@ Outcome MeasureBoxes(Visibility rule, std::optional<double> extension_m) {
   for (std::int64_t i = 0; i < result.maps.frame_count(); ++i) {
     AddDetections(result.maps.grid, result.maps.Frame(i), i, detections);
   }
-  const Tracks truth = ReadTracks(DataFolder() / "pets2009/gt-mot15-3d.txt").value();
+  Tracks truth = ReadTracks(DataFolder() / "pets2009/gt-mot15-3d.txt").value();
+  for (Track& track : truth) {
+    std::erase_if(track.points, [](const TrackPoint& point) { return point.frame >= kFrames; });
+  }
+  std::erase_if(truth, [](const Track& track) { return track.points.empty(); });
   return {EvaluateTracks(truth, detections, {}, &scene.area).value(),
           EvaluateTracks(truth, result.tracks, {}, &scene.area).value()};
 }
@@ -162,17 +172,17 @@ void ExpectExtensionHelps(const Table& table, double margin) {
 TEST(VisibilityData, RealBoxesInSevenViews) {
   if (DataFolder().empty()) GTEST_SKIP() << "the research data is not here";
   const Table table = MeasureAll("real boxes, seven views", MeasureBoxes);
-  ExpectExtensionHelps(table, 0.06);
+  ExpectExtensionHelps(table, 0.10);
   for (const bool extended : {false, true}) {
     EXPECT_GT(table.Moda(Visibility::kCentre, extended),
-              table.Moda(Visibility::kComplete, extended) + 0.03);
+              table.Moda(Visibility::kComplete, extended) + 0.015);
   }
-  EXPECT_GT(table.Moda(Visibility::kContinuous), table.Moda(Visibility::kCentre) - 0.005);
+  EXPECT_GT(table.Moda(Visibility::kContinuous), table.Moda(Visibility::kCentre) - 0.003);
   // Tracks: the order holds where it is wide.
   const auto mota = [&](Visibility rule, bool extended) {
     return table.Of(rule, extended).tracks.value().mota;
   };
-  for (const Visibility rule : kRules) EXPECT_GT(mota(rule, true), mota(rule, false) + 0.06);
+  for (const Visibility rule : kRules) EXPECT_GT(mota(rule, true), mota(rule, false) + 0.10);
   EXPECT_GT(mota(Visibility::kCentre, true), mota(Visibility::kComplete, true) + 0.01);
   const Visibility usual = OccupancyOptions().visibility;
   EXPECT_FALSE(GridOptions().extension_m.has_value()) << "extended by default";
@@ -198,9 +208,9 @@ TEST(VisibilityData, SimulatedSilhouettesInTheFourNearViews) {
   ExpectExtensionHelps(table, 0.30);
   for (const bool extended : {false, true}) {
     EXPECT_GT(table.Moda(Visibility::kCentre, extended),
-              table.Moda(Visibility::kComplete, extended) + 0.02);
+              table.Moda(Visibility::kComplete, extended) + 0.03);
     EXPECT_GT(table.Moda(Visibility::kContinuous, extended),
-              table.Moda(Visibility::kCentre, extended) + 0.01);
+              table.Moda(Visibility::kCentre, extended) + 0.005);
   }
 }
 
