@@ -17,7 +17,8 @@
 namespace vantage::internal {
 namespace {
 
-constexpr double kMinForeground = 0.25;
+constexpr double kMinForegroundPerson = 0.25;
+constexpr double kMinForegroundPicture = 0.02;
 constexpr double kMinCover = 1e-4;
 /// A cell whose presence is below this share of its prior covers nothing, and is out if it does not
 /// rise.
@@ -294,8 +295,8 @@ class FastSolver {
     for (const CameraFrame& camera : cameras_) camera.AddForegroundShares(words, shares);
     const double cost = problem_.options.background_cost;
     const double least = problem_.options.evidence == Evidence::kPerson
-                             ? std::min(kMinForeground, cost / (1 + cost))
-                             : kMinForeground;
+                             ? std::min(kMinForegroundPerson, cost / (1 + cost))
+                             : kMinForegroundPicture;
     slots_.assign(words.size(), -1);
     for (std::size_t cell = 0; cell < words.size(); ++cell) {
       if (words[cell] == 0 || shares[cell] < least * words[cell]) continue;

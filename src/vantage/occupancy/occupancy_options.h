@@ -63,7 +63,7 @@ struct OccupancyOptions {
   /// depends on all frames before it, and frames cannot be solved side by side.
   bool warm_start = false;
   /// Which cells a camera speaks for.
-  Visibility visibility = Visibility::kCentre;
+  Visibility visibility = Visibility::kContinuous;
   /// The sides of a mask are divided by this before use (exact area averages),
   /// 1 <= reduction <= 64; none: as AutomaticReduction says in the fast mode, 1 in the exact one.
   std::optional<double> reduction = std::nullopt;
