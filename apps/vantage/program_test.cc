@@ -318,8 +318,8 @@ TEST(HostileScene, FullDisk) {
   const std::string out = scene.out().string();
   ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet", path, out), FullDiskAfter(1)),
                 1, "cannot be written");
-  ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet --save-maps", path, out),
-                           FullDiskAfter(8)),
+  ExpectOneLine(RunProgram(fmt::format("occupancy '{}' -o '{}/maps.h5' --quiet", path, out),
+                           FullDiskAfter(1)),
                 1, "maps");
   ExpectOneLine(RunProgram(fmt::format("track '{}' -o '{}' --quiet --save-masks", path, out),
                            FullDiskAfter(1)),

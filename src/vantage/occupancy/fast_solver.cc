@@ -45,7 +45,9 @@ class CameraFrame {
       const cv::Rect& r = c.rectangle;
       const int* const top = sums[r.y] + r.x;
       const int* const bottom = sums[r.y + r.height] + r.x;
-      const int sum = bottom[r.width] - bottom[0] - top[r.width] + top[0];
+      const auto at = [](int value) { return static_cast<std::uint32_t>(value); };
+      // Modulo 2^32: the sums of a huge picture may wrap around, that of a rectangle does not.
+      const std::uint32_t sum = at(bottom[r.width]) - at(bottom[0]) - at(top[r.width]) + at(top[0]);
       const auto cell = static_cast<std::size_t>(c.cell);
       words[cell] += static_cast<double>(c.weight);
       shares[cell] += static_cast<double>(c.weight) * sum / (100 * c.area);

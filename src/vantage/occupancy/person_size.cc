@@ -85,7 +85,9 @@ RobustLength Robust(std::span<const double> sorted) {
 
 }  // namespace
 
-double PersonSizeReport::RectangleWidth_m() const { return width->value_m + 2.5 * width->spread_m; }
+double PersonSizeReport::RectangleWidth_m(double cell_m) const {
+  return width->value_m + std::max(2.5 * width->spread_m, CellAllowance_m(cell_m));
+}
 
 double PersonSizeReport::RectangleHeight_m() const {
   return height->value_m + 1.5 * height->spread_m;

@@ -25,6 +25,10 @@ struct RobustLength {
   double spread_m = 0;
 };
 
+/// What a rectangle must be wider than a person because people do not stand at the centres of
+/// cells: 4 in 5 stand no farther to one side.
+inline double CellAllowance_m(double cell_m) { return 0.4 * cell_m; }
+
 /// How large people are in the masks of a recording.
 struct PersonSizeReport {
   /// Moments at which the masks were measured.
@@ -39,11 +43,13 @@ struct PersonSizeReport {
   std::optional<RobustLength> height;
 
   std::int64_t TotalCounted() const;
-  /// Width of the rectangle that stands for a person; `width` must have a value. The usual width
-  /// and 2.5 times its spread: 19 in 20 people are no wider (of a normal distribution). What sticks
-  /// out of a rectangle that is too narrow is explained by a second person beside the first; one
-  /// that is too wide only costs a little evidence.
-  double RectangleWidth_m() const;
+  /// Width of the rectangle that stands for a person in a grid of such cells; `width` must have a
+  /// value. To the usual width comes the larger of two allowances, for what sticks out of the
+  /// rectangle is explained by a second person beside the first, and one that is too wide only
+  /// costs a little evidence: 2.5 times the width's spread (19 in 20 people are no wider, of a
+  /// normal distribution), and 0.4 of a cell (4 in 5 people stand no farther to one side of a
+  /// cell's centre).
+  double RectangleWidth_m(double cell_m) const;
   /// Height of that rectangle; `height` must have a value. The usual height and 1.5 times its
   /// spread, for silhouettes lose feet and heads more often than they gain any.
   double RectangleHeight_m() const;

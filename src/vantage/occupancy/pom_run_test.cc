@@ -134,6 +134,27 @@ TEST(RunPom, AgreesWithTheAuthorsProgram) {
   ExpectTheAuthorsAnswers(DataFolder() / "pom/test.pom");
 }
 
+/// In the fast mode float and the cells that are left out show, but the detections are the same.
+TEST(RunPom, FastModeFindsTheCellsOfTheAuthorsProgram) {
+  if (DataFolder().empty()) GTEST_SKIP() << "research data is absent";
+  const TemporaryFolder folder;
+  PomFile file = *ReadPomFile(DataFolder() / "pom/test.pom");
+  file.options.mode = SolveMode::kFast;
+  ASSERT_EQ(MessageOf(RunPom(file, folder.path(), 2, {})), "");
+  int found = 0;
+  for (int frame = 160; frame < 190; ++frame) {
+    const std::string name = fmt::format("proba-f{}.dat", frame);
+    const auto expected = ReadProbabilities(DataFolder() / "pom/expected" / name);
+    const auto q = ReadProbabilities(folder / ("out/" + name));
+    ASSERT_EQ(q.size(), expected.size());
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      EXPECT_EQ(q[i] > 0.5, expected[i] > 0.5) << "frame " << frame << ", cell " << i;
+      found += q[i] > 0.5 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(found, 50);
+}
+
 /// The later form of the configuration, which gives every camera a number and a size of its own.
 TEST(RunPom, AgreesWithTheAuthorsProgramWhenCamerasHaveLines) {
   if (DataFolder().empty()) GTEST_SKIP() << "research data is absent";

@@ -82,7 +82,8 @@ translation_m = [0.0, 0.8, 5.6]
   /// Where a person at (x, 0.5) is.
   cv::Rect Person(double x_m) const {
     const Scene scene = Load();
-    const PixelBox box = PersonBox(scene.cameras[0].camera, {x_m, 0.5}, scene.person.OrDefault()).value();
+    const PixelBox box =
+        PersonBox(scene.cameras[0].camera, {x_m, 0.5}, scene.person.OrDefault()).value();
     return cv::Rect(cv::Point(static_cast<int>(std::lround(box.min_x)),
                               static_cast<int>(std::lround(box.min_y))),
                     cv::Point(static_cast<int>(std::lround(box.max_x)),
@@ -202,7 +203,8 @@ TEST_F(DrawnScene, WithoutHoldEveryFrameIsForItself) {
   StageOptions options = Options();
   options.hold.standing = false;
   const Masked run = Compute(scene, options);
-  const Ground ground = LayOutGround(scene, {}, options.occupancy).value();
+  const Ground ground =
+      LayOutGround(scene, run.result.report.person.used, options.occupancy).value();
   const auto solver = OccupancySolver::Create(ground.views, options.occupancy);
   auto subtractor = BackgroundSubtractor::Create({160, 120}, options.background);
   ASSERT_TRUE(solver && subtractor);

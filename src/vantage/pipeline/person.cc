@@ -53,8 +53,10 @@ Result<PersonReport> ResolvePerson(const Scene& scene, const BackgroundOptions& 
   VANTAGE_ASSIGN_OR_RETURN(report.measured, Measure(scene, background, threads, control, sample));
   if (report.measured->width) {
     report.found = true;
-    report.used =
-        scene.person.Or(report.measured->RectangleWidth_m(), report.measured->RectangleHeight_m());
+    report.used = scene.person.Or(report.measured->RectangleWidth_m(scene.grid.cell_m),
+                                  report.measured->RectangleHeight_m());
+  } else if (!scene.person.width_m) {
+    report.used.width_m += CellAllowance_m(scene.grid.cell_m);
   }
   report.seconds = stopwatch.Seconds();
   return report;

@@ -41,8 +41,8 @@ struct PersonSample {
 
 /// The lengths that the scene leaves open, measured in a first pass over the beginning of the
 /// recording (PersonSizeMeter), which opens the sources for itself. Where too few people are seen
-/// there the lengths of PersonOptions are used. Does nothing when the scene gives both. What it
-/// finds does not depend on `threads`.
+/// there the lengths of PersonOptions are used, the width with CellAllowance_m. Does nothing when
+/// the scene gives both. What it finds does not depend on `threads`.
 Result<PersonReport> ResolvePerson(const Scene& scene, const BackgroundOptions& background,
                                    int threads, const RunControl& control = {},
                                    const PersonSample& sample = {});

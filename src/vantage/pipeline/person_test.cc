@@ -75,7 +75,8 @@ TEST_F(OneCamera, SizeIsFoundWhereTheSceneLeavesItOpen) {
   const auto report = ResolvePerson(scene, {}, 1);
   ASSERT_TRUE(report) << MessageOf(report);
   EXPECT_TRUE(report->found);
-  EXPECT_NEAR(report->used.width_m, 0.62, 0.04);
+  // The drawn width and the allowance for cells of 0.5 m, which is larger than that for the spread.
+  EXPECT_NEAR(report->used.width_m, 0.62 + 0.2, 0.04);
   EXPECT_NEAR(report->used.height_m, 1.6, 0.05);
   EXPECT_EQ(report->used.shape, PersonOptions().shape);
   ASSERT_TRUE(report->measured);
@@ -113,7 +114,7 @@ TEST_F(OneCamera, GivenLengthsArePreferred) {
   const Scene scene = Load();
   const auto report = ResolvePerson(scene, {}, 1);
   ASSERT_TRUE(report) << MessageOf(report);
-  EXPECT_NEAR(report->used.width_m, 0.62, 0.04);
+  EXPECT_NEAR(report->used.width_m, 0.62 + 0.2, 0.04);
   EXPECT_EQ(report->used.height_m, 2.0);
   EXPECT_EQ(JsonOf(*report, scene)["height_source"], "given");
 }
@@ -135,7 +136,7 @@ TEST_F(OneCamera, TooFewFiguresGiveTheDefaultAndSaySo) {
   const auto report = ResolvePerson(scene, {}, 1);
   ASSERT_TRUE(report) << MessageOf(report);
   EXPECT_FALSE(report->found);
-  EXPECT_EQ(report->used.width_m, PersonOptions().width_m);
+  EXPECT_EQ(report->used.width_m, PersonOptions().width_m + CellAllowance_m(0.5));
   EXPECT_EQ(report->used.height_m, PersonOptions().height_m);
   EXPECT_THAT(TextOf(*report), HasSubstr("default: 10 figures"));
   EXPECT_EQ(JsonOf(*report, scene)["width_source"], "default");
