@@ -23,10 +23,13 @@ class OccupancyPictureTest : public ::testing::Test {
     grid_ = GroundGrid::Cover(scene_.area, 0.5, extension_.extension()).value();
     for (const SceneCamera& camera : scene_.cameras) {
       views_.push_back(
-          BuildView(camera.camera, grid_, scene_.person.OrDefault(), Visibility::kCentre, 1).value());
+          BuildView(camera.camera, grid_, scene_.person.OrDefault(), Visibility::kCentre, 1)
+              .value());
     }
   }
-  OccupancyPicture Draw() const { return {scene_, scene_.person.OrDefault(), grid_, views_, extension_}; }
+  OccupancyPicture Draw() const {
+    return {scene_, scene_.person.OrDefault(), grid_, views_, extension_};
+  }
   static int Different(const cv::Mat& a, const cv::Mat& b) {
     EXPECT_EQ(a.size(), b.size());
     cv::Mat differs;
