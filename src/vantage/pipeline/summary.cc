@@ -84,6 +84,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   Json& counts = json["counts"];
   counts["cameras"] = scene.cameras.size();
   counts["frames"] = maps.frames;
+  counts["pictures_missing"] = maps.pictures_missing;
   counts["grid_columns"] = result.maps.grid.columns;
   counts["grid_rows"] = result.maps.grid.rows;
   counts["area_cells"] = maps.area_cells;
