@@ -64,7 +64,8 @@ template <int kSide>
 void AverageBlocks(const cv::Mat& mask, int side, cv::Mat& image) {
   if constexpr (kSide != 0) side = kSide;
   const float scale = 1.0F / static_cast<float>(255 * side * side);
-  std::vector<std::uint16_t> columns(static_cast<std::size_t>(image.cols * side));
+  std::vector<std::uint16_t> columns(static_cast<std::size_t>(image.cols) *
+                                     static_cast<std::size_t>(side));
   for (int y = 0; y < image.rows; ++y) {
     std::fill(columns.begin(), columns.end(), std::uint16_t{0});
     for (int row = y * side; row < (y + 1) * side; ++row) {

@@ -49,6 +49,7 @@ OccupancyOptions OriginalPomOptions() {
   options.mode = SolveMode::kExact;
   options.prior = 0.01;
   options.damping = Damping::kFixed;
+  options.smoothing = 0.8;
   options.tolerance = 1e-4;
   options.stable_iterations = 5;
   return options;

@@ -49,7 +49,7 @@ struct OccupancyOptions {
   Damping damping = Damping::kAdaptive;
   /// Share of the old value that a cell keeps in an iteration (adaptive: in the first),
   /// 0 <= smoothing < 1.
-  double smoothing = 0.8;
+  double smoothing = 0.7;
   /// Iterations at most, 1 <= max_iterations <= 100000.
   int max_iterations = 100;
   /// An iteration that changes no cell by this much is stable, 0 <= tolerance <= 1.

@@ -19,7 +19,7 @@ struct PeakOptions {
   double threshold = 0.5;
   /// The cell's centre of a detection is at least this far from the position of every stronger
   /// one, in metres, 0 <= distance <= 100.
-  double distance_m = 0.5;
+  double distance_m = 0.35;
   /// Position between cells: the mean of the cell's and its eight neighbours' centres, weighted by
   /// their probabilities. Otherwise the cell's centre.
   bool refine = true;

@@ -150,7 +150,7 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   maps.visible = std::move(ground.visible);
 
   VANTAGE_ASSIGN_OR_RETURN(std::optional<Feedback> feedback,
-                           Feedback::Create(scene, person.used, options, stream, maps));
+                           Feedback::Create(scene, report.person.used, options, stream, maps));
 
   const std::int64_t total = stream.frame_count().value_or(0);
   // What a frame holds must not depend on the number of threads.
