@@ -203,7 +203,7 @@ const OccupancyCase& ArenaCase() {
 double Moda(const OccupancyCase& problem, const std::vector<std::vector<float>>& maps) {
   std::size_t people = 0, found = 0, matched = 0;
   for (std::size_t i = 0; i < problem.frames.size(); ++i) {
-    const std::vector<Peak> peaks = FindPeaks(problem.grid, maps[i], {}).value();
+    const std::vector<Peak> peaks = FindPeaks(problem.grid, maps[i], {.distance_m = 0.5}).value();
     people += problem.frames[i].people_m.size();
     found += peaks.size();
     matched +=
