@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
 #include <tuple>
 
 namespace vantage::linking {
@@ -11,6 +13,7 @@ namespace {
 
 // A node takes about 60 bytes in the solver, and costs of the longest path must fit 64 bits.
 constexpr std::int64_t kMaxNodes = std::int64_t{1} << 27;
+constexpr int kMaxDepth = 10;
 
 Status CheckSizes(const LinkingProblem& problem) {
   if (problem.columns < 1 || problem.rows < 1) {
@@ -40,10 +43,15 @@ Status CheckSizes(const LinkingProblem& problem) {
   return {};
 }
 
-std::vector<Move> MakeMoves(int depth, int grid_columns, double movement_cost) {
+/// `reach`: cells per frame as the crow flies, if that limits people instead of `depth`.
+std::vector<Move> MakeMoves(int depth, std::optional<double> reach, int grid_columns,
+                            double movement_cost) {
   std::vector<Move> moves;
+  if (reach) depth = std::max(1, static_cast<int>(*reach));
   for (int rows = -depth; rows <= depth; ++rows) {
     for (int columns = -depth; columns <= depth; ++columns) {
+      const bool neighbour = std::max(std::abs(rows), std::abs(columns)) <= 1;
+      if (reach && !neighbour && std::hypot(columns, rows) > *reach) continue;
       moves.push_back({.columns = columns,
                        .rows = rows,
                        .offset = columns + rows * grid_columns,
@@ -58,6 +66,25 @@ std::vector<Move> MakeMoves(int depth, int grid_columns, double movement_cost) {
     return key(a) < key(b);
   });
   return moves;
+}
+
+/// Cells per frame that options.max_speed_mps allows.
+Result<std::optional<double>> Reach(const LinkingProblem& problem, const LinkingOptions& options) {
+  if (!options.max_speed_mps) return std::optional<double>();
+  if (!(problem.cell_m > 0) || !(problem.frames_per_second > 0)) {
+    return Fail(
+        "linking: max_speed needs the size of cells and the frame rate, and they are {} m and {} "
+        "frames per second; give linking.depth instead",
+        problem.cell_m, problem.frames_per_second);
+  }
+  const double reach = *options.max_speed_mps / problem.frames_per_second / problem.cell_m;
+  if (reach > kMaxDepth) {
+    return Fail(
+        "linking.max_speed is {} m/s, {:.3g} cells of {} m per frame; at most {} cells are "
+        "possible: lower it or use larger cells",
+        *options.max_speed_mps, reach, problem.cell_m, kMaxDepth);
+  }
+  return std::optional(reach);
 }
 
 }  // namespace
@@ -75,12 +102,13 @@ Result<LayeredGraph> MakeLayeredGraph(const LinkingProblem& problem,
                                       const LinkingOptions& options) {
   VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "linking"));
   VANTAGE_RETURN_IF_ERROR(CheckSizes(problem));
+  VANTAGE_ASSIGN_OR_RETURN(const std::optional<double> reach, Reach(problem, options));
   LayeredGraph graph;
   graph.columns = problem.columns;
   graph.rows = problem.rows;
   graph.frames = problem.frames;
   graph.cells = static_cast<std::uint32_t>(problem.columns * problem.rows);
-  graph.moves = MakeMoves(options.depth, problem.columns, options.movement_cost);
+  graph.moves = MakeMoves(options.depth, reach, problem.columns, options.movement_cost);
   const Cost birth_cost = ToUnits(options.birth_cost);
   graph.entry_cost = birth_cost / 2;
   graph.exit_cost = birth_cost - graph.entry_cost;

@@ -13,13 +13,16 @@ Result<LinkMapsResult> LinkMaps(const OccupancyMaps& maps, const LinkingOptions&
                                 std::span<const Polygon> obstacles, const RunControl& control) {
   const std::vector<std::uint8_t> access = AccessCells(maps, linking.access, doors);
   const std::vector<std::uint8_t> obstacle = CellsIn(maps.grid, obstacles);
-  VANTAGE_ASSIGN_OR_RETURN(const LinkingResult linked, LinkPaths({.columns = maps.grid.columns,
-                                                                  .rows = maps.grid.rows,
-                                                                  .frames = maps.frame_count(),
-                                                                  .probability = maps.values,
-                                                                  .access = access,
-                                                                  .obstacle = obstacle},
-                                                                 linking, control));
+  VANTAGE_ASSIGN_OR_RETURN(const LinkingResult linked,
+                           LinkPaths({.columns = maps.grid.columns,
+                                      .rows = maps.grid.rows,
+                                      .frames = maps.frame_count(),
+                                      .probability = maps.values,
+                                      .access = access,
+                                      .obstacle = obstacle,
+                                      .cell_m = maps.grid.cell_m,
+                                      .frames_per_second = maps.frames_per_second},
+                                     linking, control));
   LinkMapsResult result;
   VANTAGE_ASSIGN_OR_RETURN(result.tracks, BuildTracks(linked.paths, maps, tracks));
   result.report.linking = linked.report;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,10 @@ enum class AccessRule {
 struct LinkingOptions {
   /// Cells that a person may move per frame, Chebyshev distance, 0 <= depth <= 10.
   int depth = 1;
+  /// In place of `depth`: metres per second that a person may move at most, > 0. Steps to all cells
+  /// whose centre is as near as that in one frame, and always to the 8 neighbours; more than 10
+  /// cells per frame are an error.
+  std::optional<double> max_speed_mps = std::nullopt;
   /// A path is added only while it earns more than this, >= 0: the total cost of the optimum counts
   /// birth_cost for each path.
   double birth_cost = 45;
@@ -53,6 +58,9 @@ struct LinkingProblem {
   std::span<const std::uint8_t> access;
   /// columns * rows, or empty; non-zero: nobody can stand here.
   std::span<const std::uint8_t> obstacle;
+  /// Side of a cell and frame rate; needed with LinkingOptions::max_speed_mps alone.
+  double cell_m = 0;
+  double frames_per_second = 0;
 };
 
 /// One path: a cell for each frame from first_frame on.

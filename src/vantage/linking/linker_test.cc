@@ -153,6 +153,31 @@ TEST(Linker, CostsAreClippedOnBothSides) {
   EXPECT_NEAR(NodeCost(0.0, 1e-300) / linking::kUnitsPerCost, 300 * std::log(10.0), 1e-5);
 }
 
+TEST(Linker, PeopleMoveAtMostAsFastAsAllowed) {
+  // Three cells a frame: 3 x 0.5 m x 10 frames per second = 15 m/s.
+  Corridor corridor(8, 2);
+  corridor.Set(0, 1, 0.99F);
+  corridor.Set(1, 4, 0.99F);
+  corridor.NoAccess();
+  LinkingProblem problem = corridor.problem();
+  problem.cell_m = 0.5;
+  problem.frames_per_second = 10;
+  const auto cost = [&](double speed_mps) {
+    return Link(problem, {.depth = 5, .max_speed_mps = speed_mps, .birth_cost = 1}).report.cost;
+  };
+  EXPECT_NEAR(cost(15), 1 - 2 * std::log(99) + 3 * 2, 1e-4);
+  EXPECT_EQ(cost(14.9), 0);
+  // However slow, people may go to the next cell at some time.
+  corridor.Set(1, 2, 0.99F);
+  EXPECT_NEAR(cost(0.1), 1 - 2 * std::log(99) + 2, 1e-4);
+
+  const auto message = [&](const LinkingProblem& wrong) {
+    return testing::MessageOf(LinkPaths(wrong, {.max_speed_mps = 60}));
+  };
+  EXPECT_THAT(message(problem), HasSubstr("linking.max_speed is 60 m/s, 12 cells of 0.5 m"));
+  EXPECT_THAT(message(corridor.problem()), HasSubstr("needs the size of cells"));
+}
+
 TEST(Linker, RefusesWhatIsNotAProblem) {
   const auto message = [](const LinkingProblem& problem, const LinkingOptions& options) {
     return testing::MessageOf(LinkPaths(problem, options));
