@@ -9,75 +9,131 @@
 namespace vantage::linking {
 namespace {
 
-constexpr Cost kUnreached = std::numeric_limits<Cost>::max();
 constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kExpansionsBetweenStopChecks = 1 << 14;
 
+template <Side kNear>
+constexpr Cost Mirror(Cost potential) {
+  return kNear == kOut ? potential : -potential;
+}
+
 }  // namespace
 
-FlowSolver::FlowSolver(const LayeredGraph& graph, const Effort& effort)
-    : graph_(graph),
-      effort_(effort),
-      link_(std::size_t{2} * graph.node_count(), kUnused),
-      potential_(std::size_t{2} * graph.node_count(), 0),
-      label_(std::size_t{2} * graph.node_count(), Label{kUnreached, kEdge}) {
-  for (Node node = 0; node < graph_.node_count(); ++node) {
-    const bool blocked = graph_.obstacle[node % graph_.cells] != 0;
-    const Link link = blocked ? kBlocked : graph_.node_cost[node] < 0 ? kOpen : kUnused;
-    link_[At(node, kIn)] = link_[At(node, kOut)] = link;
+FlowSolver::FlowSolver(const Network& network, const Effort& effort)
+    : network_(network), effort_(effort), nodes_(network) {}
+
+void FlowSolver::AddFrame(std::span<const float> probability) {
+  if (nodes_.end_frame() > nodes_.first_frame()) ReopenLastFrame();
+  const std::vector<NodeId> people = nodes_.AddFrame(probability);
+  for (const NodeId id : people) nodes_[id].link[kIn] = nodes_[id].link[kOut] = kOpen;
+  open_.insert(open_.end(), people.begin(), people.end());
+  if (nodes_.end_frame() - 1 > nodes_.first_frame()) SetFirstPotentials();
+}
+
+void FlowSolver::ReopenLastFrame() {
+  const auto first = std::ssize(open_);
+  nodes_.ForEach(nodes_.end_frame() - 1, [this](NodeId id) {
+    Node& node = nodes_[id];
+    if (node.link[kOut] != kToEdge || network_.access[network_.Cell(node.column, node.row)] != 0) {
+      return;
+    }
+    node.link[kOut] = kOpen;
+    open_.push_back(id);
+  });
+  std::sort(open_.begin() + first, open_.end());
+}
+
+// With y(in(w)) = min(0, min over moves of y(out(v)) + cost) the moves keep the condition, and the
+// entries, which cost at least 0, do too. A node that carries flow (c < 0) needs y(out(w)) >=
+// y(in(w)) + c, and y(out(w)) >= -exit cost since w is an exit: 0 will do. One that carries none
+// needs y(out(w)) in [-exit cost, y(in(w)) + c]; where that is empty a path through w would pay
+// already, and w carries flow from the start. Nodes that no y(out(v)) < 0 reaches keep y = 0.
+void FlowSolver::SetFirstPotentials() {
+  const std::int64_t frame = nodes_.end_frame() - 1;
+  std::vector<NodeId> before;
+  nodes_.ForEach(frame - 1, [&](NodeId id) {
+    if (nodes_[id].potential[kOut] < 0) before.push_back(id);
+  });
+  std::sort(before.begin(), before.end());
+  std::vector<NodeId> lowered;
+  for (const NodeId id : before) {
+    const Node from = nodes_[id];
+    for (const Move& move : network_.moves) {
+      const Cost potential = from.potential[kOut] + move.cost;
+      const int column = from.column + move.columns;
+      const int row = from.row + move.rows;
+      if (potential >= 0 || !network_.Contains(column, row) ||
+          network_.obstacle[network_.Cell(column, row)] != 0) {
+        continue;
+      }
+      const NodeId to = nodes_.FindOrAdd(frame, column, row);
+      if (nodes_[to].potential[kIn] == 0) lowered.push_back(to);
+      nodes_[to].potential[kIn] = std::min(nodes_[to].potential[kIn], potential);
+    }
+  }
+  for (const NodeId id : lowered) {
+    Node& node = nodes_[id];
+    if (node.Carries()) continue;
+    const Cost highest = node.potential[kIn] + node.cost;
+    node.potential[kOut] = std::clamp<Cost>(highest, -network_.exit_cost, 0);
+    if (highest >= -network_.exit_cost) continue;
+    node.link[kIn] = node.link[kOut] = kOpen;
+    open_.push_back(id);
   }
 }
 
-bool FlowSolver::Solve(const RunControl& control) {
-  return SettleAll<kOut>(control) && SettleAll<kIn>(control);
+bool FlowSolver::Settle(const RunControl& control) {
+  if (!SettleAll<kOut>(control) || !SettleAll<kIn>(control)) return false;
+  open_.clear();
+  return true;
 }
 
-template <FlowSolver::Side kNear>
+template <Side kNear>
 bool FlowSolver::SettleAll(const RunControl& control) {
-  const std::int64_t frames_before = kNear == kOut ? 0 : graph_.frames;
+  const std::int64_t frames = nodes_.end_frame() - nodes_.first_frame();
+  const std::int64_t frames_before = kNear == kOut ? 0 : frames;
+  std::int64_t reported = -1;
   std::vector<Vertex> waiting;
-  for (Node node = 0; node < graph_.node_count(); ++node) {
-    if (node % graph_.cells == 0) {
-      control.Report(frames_before + node / graph_.cells, 2 * graph_.frames);
+  for (const NodeId id : open_) {
+    const Vertex vertex = At(id, kNear);
+    if (const std::int64_t frame = nodes_[id].frame - nodes_.first_frame(); frame > reported) {
+      control.Report(frames_before + frame, 2 * frames);
+      reported = frame;
     }
-    const QueueEntry start(0, At(node, kNear));
-    if (link_[start.second] != kOpen) continue;
+    if (LinkOf(vertex) != kOpen) continue;
+    const QueueEntry start = Entry<kNear>(0, vertex);
     const Outcome outcome = Search<kNear>(std::span(&start, 1), effort_.nearby, control);
     if (outcome == Outcome::kStopped) return false;
-    if (outcome == Outcome::kGaveUp) waiting.push_back(start.second);
+    if (outcome == Outcome::kGaveUp) waiting.push_back(vertex);
   }
-  expansions_ = 0;
-  const auto between_sweeps =
-      static_cast<std::int64_t>(effort_.share_between_sweeps * graph_.node_count());
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
-    if (expansions_ >= between_sweeps &&
-        !Spread<Other(kNear)>(std::ssize(waiting) - static_cast<std::int64_t>(i), control)) {
-      return false;
-    }
-    const QueueEntry start(0, waiting[i]);
+  for (const Vertex vertex : waiting) {
+    const QueueEntry start = Entry<kNear>(0, vertex);
     if (Search<kNear>(std::span(&start, 1), kUnlimited, control) == Outcome::kStopped) return false;
   }
-  control.Report(frames_before + graph_.frames, 2 * graph_.frames);
+  control.Report(frames_before + frames, 2 * frames);
   return true;
 }
 
 bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
   targets_ = Targets::kBeginnings;
   std::vector<Vertex> ends;
-  for (Node node = 0; node < graph_.node_count(); ++node) {
-    if (link_[At(node, kOut)] == kToEdge) ends.push_back(At(node, kOut));
+  for (std::int64_t frame = nodes_.first_frame(); frame < nodes_.end_frame(); ++frame) {
+    nodes_.ForEach(frame, [&](NodeId id) {
+      if (nodes_[id].link[kOut] == kToEdge) ends.push_back(At(id, kOut));
+    });
   }
   std::vector<QueueEntry> starts;
   while (std::ssize(ends) > count) {
     starts.clear();
     for (const Vertex end : ends) {
-      starts.emplace_back(edge_potential_[kOut] - graph_.exit_cost - potential_[end], end);
+      starts.push_back(
+          Entry<kOut>(edge_potential_[kOut] - network_.exit_cost - PotentialOf(end), end));
     }
     if (Search<kOut>(starts, kUnlimited, control) == Outcome::kStopped) return false;
     // The search began at the edge's end of paths, at distance 0 (see UpdatePotentials).
     edge_potential_[kOut] -= target_distance_;
     // Only the path's first vertex has stopped being an end.
-    std::erase_if(ends, [&](Vertex end) { return link_[end] != kToEdge; });
+    std::erase_if(ends, [&](Vertex end) { return LinkOf(end) != kToEdge; });
   }
   return true;
 }
@@ -86,154 +142,117 @@ bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
 // least 0, so a target is final as soon as nothing nearer is left in the queue, and vertices no
 // nearer than the best target so far need no label: neither the path nor the new potentials depend
 // on them.
-template <FlowSolver::Side kNear>
+template <Side kNear>
 FlowSolver::Outcome FlowSolver::Search(std::span<const QueueEntry> starts,
                                        std::int64_t most_expansions, const RunControl& control) {
   target_distance_ = kUnreached;
-  for (const auto& [distance, vertex] : starts) {
-    label_[vertex] = {distance, kEdge};
-    reached_.push_back(vertex);
+  for (const QueueEntry& start : starts) {
+    DistanceOf(start.vertex) = start.distance;
+    nodes_[NodeOf(start.vertex)].parent[SideOf(start.vertex)] = kEdge;
+    reached_.push_back(start.vertex);
   }
   queue_.assign(starts.begin(), starts.end());
   std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
   std::int64_t expansions = 0;
-  while (!queue_.empty() && queue_.front().first < target_distance_) {
+  while (!queue_.empty() && queue_.front().distance < target_distance_) {
     if (expansions == most_expansions) {
       ForgetLabels();
       return Outcome::kGaveUp;
     }
-    const auto [distance, vertex] = PopNearest();
-    if (distance > label_[vertex].distance) continue;  // a nearer way was found meanwhile
-    Expand<kNear>(vertex, distance);
+    const QueueEntry nearest = PopNearest();
+    if (nearest.distance > DistanceOf(nearest.vertex)) continue;  // a nearer way was found since
+    Expand<kNear>(nearest.vertex, nearest.distance);
     if (++expansions % kExpansionsBetweenStopChecks == 0 && control.Stopped()) {
       return Outcome::kStopped;
     }
   }
   if (control.Stopped()) return Outcome::kStopped;
-  expansions_ += expansions;
   PushFlowAlong(PathToTarget(), kNear);
   UpdatePotentials<kNear>();
   return Outcome::kFound;
 }
 
-template <FlowSolver::Side kNear>
-bool FlowSolver::Spread(std::int64_t imbalances, const RunControl& control) {
-  constexpr Side kFar = Other(kNear);
-  targets_ = Targets::kNone;
-  target_distance_ = kUnreached;
-  StartSpread<kNear>();
-  std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
-  for (std::int64_t expansions = 1; imbalances > 0; ++expansions) {
-    const auto [distance, vertex] = PopNearest();
-    if (distance > label_[vertex].distance) continue;
-    if (SideOf(vertex) == kFar && link_[vertex] == kOpen && --imbalances == 0) {
-      target_distance_ = distance;
-      break;
-    }
-    Expand<kNear>(vertex, distance);
-    if (expansions % kExpansionsBetweenStopChecks == 0 && control.Stopped()) return false;
-  }
-  // The edge itself is at distance 0.
-  const Cost edge_change = Mirror<kNear>(-target_distance_);
-  edge_potential_[kIn] += edge_change;
-  edge_potential_[kOut] += edge_change;
-  UpdatePotentials<kNear>();
-  targets_ = Targets::kImbalances;
-  expansions_ = 0;
-  return true;
-}
-
-template <FlowSolver::Side kNear>
-void FlowSolver::StartSpread() {
-  constexpr Side kFar = Other(kNear);
-  const Cost far_edge_cost = kFar == kOut ? graph_.exit_cost : graph_.entry_cost;
-  const Cost near_edge_cost = kNear == kOut ? graph_.exit_cost : graph_.entry_cost;
-  const Cost edge = Mirror<kNear>(edge_potential_[kNear]);
-  queue_.clear();
-  const auto start = [&](Vertex vertex, Cost distance) {
-    label_[vertex] = {distance, kEdge};
-    reached_.push_back(vertex);
-    queue_.emplace_back(distance, vertex);
-  };
-  for (Node node = 0; node < graph_.node_count(); ++node) {
-    const Vertex near = At(node, kNear);
-    const Vertex far = At(node, kFar);
-    if (link_[near] == kBlocked) continue;
-    if (link_[near] == kOpen) {
-      start(near, 0);
-    } else if (link_[near] == kToEdge) {
-      start(near, edge - near_edge_cost - Mirror<kNear>(potential_[near]));
-    }
-    const bool at_edge = kFar == kOut ? graph_.IsExit(node) : graph_.IsEntrance(node);
-    if (at_edge && link_[far] != kToEdge) {
-      start(far, edge + far_edge_cost - Mirror<kNear>(potential_[far]));
-    }
-  }
-}
-
-template <FlowSolver::Side kNear>
+template <Side kNear>
 void FlowSolver::Expand(Vertex vertex, Cost distance) {
   constexpr Side kFar = Other(kNear);
-  const Node node = NodeOf(vertex);
-  const Cost base = distance + Mirror<kNear>(potential_[vertex]);
-  const Vertex other_side = At(node, Other(SideOf(vertex)));
-  if (SideOf(vertex) == kNear) {
-    if (Carries(node)) Relax<kNear>(other_side, base - graph_.node_cost[node], vertex);
-    const bool at_edge = kNear == kOut ? graph_.IsExit(node) : graph_.IsEntrance(node);
-    if (targets_ == Targets::kImbalances && at_edge && link_[vertex] != kToEdge) {
-      const Cost edge_cost = kNear == kOut ? graph_.exit_cost : graph_.entry_cost;
+  const NodeId id = NodeOf(vertex);
+  const Node& node = nodes_[id];
+  const Side side = SideOf(vertex);
+  const Link link = node.link[side];
+  const Cost base = distance + Mirror<kNear>(node.potential[side]);
+  const Vertex other_side = At(id, Other(side));
+  if (side == kNear) {
+    if (node.Carries()) Relax<kNear>(other_side, base - node.cost, vertex);
+    const bool at_edge = kNear == kOut ? IsExit(node) : IsEntrance(node);
+    if (targets_ == Targets::kImbalances && at_edge && link != kToEdge) {
+      const Cost edge_cost = kNear == kOut ? network_.exit_cost : network_.entry_cost;
       OfferTarget(kEdge, base + edge_cost - Mirror<kNear>(edge_potential_[kNear]), vertex);
     }
-    ExpandMoves<kNear>(node, base);
-  } else if (!Carries(node)) {
-    Relax<kNear>(other_side, base + graph_.node_cost[node], vertex);
-  } else if (link_[vertex] == kToEdge) {
-    if (targets_ == Targets::kNone) return;
-    const Cost edge_cost = kFar == kOut ? graph_.exit_cost : graph_.entry_cost;
+    ExpandMoves<kNear>(id, base);
+  } else if (!node.Carries()) {
+    Relax<kNear>(other_side, base + node.cost, vertex);
+  } else if (link == kToEdge) {
+    const Cost edge_cost = kFar == kOut ? network_.exit_cost : network_.entry_cost;
     OfferTarget(kEdge, base - edge_cost - Mirror<kNear>(edge_potential_[kFar]), vertex);
-  } else if (link_[vertex] != kOpen) {
-    const Move& move = graph_.moves[static_cast<std::size_t>(link_[vertex])];
-    Relax<kNear>(At(Follow(node, kFar), kNear), base - move.cost, vertex);
+  } else if (IsNode(link)) {
+    Relax<kNear>(At(link, kNear), base - MoveCost(node, nodes_[link]), vertex);
   }
 }
 
-template <FlowSolver::Side kNear>
-void FlowSolver::ExpandMoves(Node node, Cost base) {
+// Nodes that are here first: a target among them may make it needless to add others.
+template <Side kNear>
+void FlowSolver::ExpandMoves(NodeId id, Cost base) {
   constexpr int kStep = kNear == kOut ? 1 : -1;
-  if (kNear == kOut ? node >= graph_.node_count() - graph_.cells : node < graph_.cells) return;
-  const Vertex from = At(node, kNear);
-  const auto cell = static_cast<int>(node % graph_.cells);
-  const int column = cell % graph_.columns;
-  const int row = cell / graph_.columns;
-  const std::int64_t below = std::int64_t{node} + kStep * std::int64_t{graph_.cells};
-  for (std::size_t number = 0; number < graph_.moves.size(); ++number) {
-    const Move& move = graph_.moves[number];
-    const int to_column = column + kStep * move.columns;
-    const int to_row = row + kStep * move.rows;
-    if (to_column < 0 || to_column >= graph_.columns || to_row < 0 || to_row >= graph_.rows) {
-      continue;
+  constexpr Side kFar = Other(kNear);
+  const Node from = nodes_[id];
+  const std::int64_t frame = from.frame + kStep;
+  if (frame < nodes_.first_frame() || frame >= nodes_.end_frame()) return;
+  absent_.clear();
+  for (const Move& move : network_.moves) {
+    const int column = from.column + kStep * move.columns;
+    const int row = from.row + kStep * move.rows;
+    if (!network_.Contains(column, row)) continue;
+    const NodeId to = nodes_.Find(frame, column, row);
+    if (to == kNoNode) {
+      absent_.push_back(&move);
+    } else if (to != from.link[kNear]) {
+      Relax<kNear>(At(to, kFar), base + move.cost, At(id, kNear));
     }
-    const auto to = At(static_cast<Node>(below + kStep * move.offset), Other(kNear));
-    if (link_[to] == kBlocked || link_[from] == static_cast<Link>(number)) continue;
-    Relax<kNear>(to, base + move.cost, from);
+  }
+  for (const Move* move : absent_) {
+    const int column = from.column + kStep * move->columns;
+    const int row = from.row + kStep * move->rows;
+    if (network_.obstacle[network_.Cell(column, row)] != 0) continue;
+    const Cost potential = nodes_.PotentialOf(frame, column, row, kFar);
+    if (base + move->cost - Mirror<kNear>(potential) >= target_distance_) continue;
+    const NodeId to = nodes_.FindOrAdd(frame, column, row);
+    Relax<kNear>(At(to, kFar), base + move->cost, At(id, kNear));
   }
 }
 
 /// `distance` is still without the potential of `to`.
-template <FlowSolver::Side kNear>
+template <Side kNear>
 void FlowSolver::Relax(Vertex to, Cost distance, Vertex from) {
-  distance -= Mirror<kNear>(potential_[to]);
+  Node& node = nodes_[NodeOf(to)];
+  const Side side = SideOf(to);
+  distance -= Mirror<kNear>(node.potential[side]);
   if (distance >= target_distance_) return;
-  if (targets_ != Targets::kNone && SideOf(to) != kNear && link_[to] == kOpen) {
+  if (side != kNear && node.link[side] == kOpen) {
     OfferTarget(to, distance, from);
     return;
   }
-  Label& label = label_[to];
-  if (distance >= label.distance) return;
-  if (label.distance == kUnreached) reached_.push_back(to);
-  label = {distance, from};
-  queue_.emplace_back(distance, to);
+  if (distance >= node.distance[side]) return;
+  if (node.distance[side] == kUnreached) reached_.push_back(to);
+  node.distance[side] = distance;
+  node.parent[side] = from;
+  queue_.push_back(Entry<kNear>(distance, to));
   std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+}
+
+template <Side kNear>
+FlowSolver::QueueEntry FlowSolver::Entry(Cost distance, Vertex vertex) const {
+  const std::int32_t frame = nodes_[NodeOf(vertex)].frame;
+  return {distance, kNear == kOut ? -frame : frame, vertex};
 }
 
 void FlowSolver::OfferTarget(Vertex target, Cost distance, Vertex from) {
@@ -251,25 +270,26 @@ FlowSolver::QueueEntry FlowSolver::PopNearest() {
 
 // New potentials, shifted so that only vertices nearer than the target change: y + min(d, D) - D
 // instead of y + min(d, D). Only differences count, and so a local search stays local.
-template <FlowSolver::Side kNear>
+template <Side kNear>
 void FlowSolver::UpdatePotentials() {
   for (const Vertex vertex : reached_) {
-    if (label_[vertex].distance < target_distance_) {
-      potential_[vertex] += Mirror<kNear>(label_[vertex].distance - target_distance_);
-    }
+    const Cost nearer = DistanceOf(vertex) - target_distance_;
+    if (nearer < 0) PotentialOf(vertex) += Mirror<kNear>(nearer);
   }
   ForgetLabels();
 }
 
 void FlowSolver::ForgetLabels() {
-  for (const Vertex vertex : reached_) label_[vertex] = {kUnreached, kEdge};
+  for (const Vertex vertex : reached_) DistanceOf(vertex) = kUnreached;
   reached_.clear();
 }
 
 std::vector<FlowSolver::Arc> FlowSolver::PathToTarget() const {
   std::vector<Arc> arcs = {target_arc_};
-  for (Vertex vertex = target_arc_.first; vertex != kEdge; vertex = label_[vertex].parent) {
-    arcs.emplace_back(label_[vertex].parent, vertex);
+  for (Vertex vertex = target_arc_.first; vertex != kEdge;) {
+    const Vertex parent = nodes_[NodeOf(vertex)].parent[SideOf(vertex)];
+    arcs.emplace_back(parent, vertex);
+    vertex = parent;
   }
   return arcs;
 }
@@ -279,69 +299,67 @@ void FlowSolver::PushFlowAlong(const std::vector<Arc>& arcs, Side near) {
   // and off the nodes, on the arcs between nodes.
   for (const auto& [from, to] : arcs) {
     if (from == kEdge) {
-      link_[to] = kOpen;
+      LinkOf(to) = kOpen;
     } else if (SideOf(from) != near && (to == kEdge || NodeOf(to) != NodeOf(from))) {
-      link_[from] = kOpen;
-      if (to != kEdge) link_[to] = kOpen;
+      LinkOf(from) = kOpen;
+      if (to != kEdge) LinkOf(to) = kOpen;
     }
   }
   for (const auto& [from, to] : arcs) {
     if (from == kEdge || to == kEdge || NodeOf(from) != NodeOf(to)) continue;
-    link_[from] = link_[to] = SideOf(from) == near ? kUnused : kOpen;
+    LinkOf(from) = LinkOf(to) = SideOf(from) == near ? kUnused : kOpen;
   }
   for (const auto& [from, to] : arcs) {
     if (from == kEdge || SideOf(from) != near) continue;
     if (to == kEdge) {
-      link_[from] = kToEdge;
+      LinkOf(from) = kToEdge;
     } else if (NodeOf(to) != NodeOf(from)) {
-      link_[from] = link_[to] =
-          LinkBetween(NodeOf(near == kOut ? from : to), NodeOf(near == kOut ? to : from));
+      LinkOf(from) = NodeOf(to);
+      LinkOf(to) = NodeOf(from);
     }
   }
 }
 
-FlowSolver::Link FlowSolver::LinkBetween(Node earlier, Node later) const {
-  const auto earlier_cell = static_cast<int>(earlier % graph_.cells);
-  const auto later_cell = static_cast<int>(later % graph_.cells);
-  const int columns = later_cell % graph_.columns - earlier_cell % graph_.columns;
-  const int rows = later_cell / graph_.columns - earlier_cell / graph_.columns;
-  const auto move =
-      std::find_if(graph_.moves.begin(), graph_.moves.end(), [&](const Move& candidate) {
-        return candidate.columns == columns && candidate.rows == rows;
-      });
-  return static_cast<Link>(move - graph_.moves.begin());
-}
-
-Node FlowSolver::Follow(Node node, Side side) const {
-  const Move& move = graph_.moves[static_cast<std::size_t>(link_[At(node, side)])];
-  const std::int64_t step = std::int64_t{graph_.cells} + move.offset;
-  return static_cast<Node>(node + (side == kOut ? step : -step));
-}
-
 std::vector<LinkedPath> FlowSolver::Paths() const {
   std::vector<LinkedPath> paths;
-  for (Node first = 0; first < graph_.node_count(); ++first) {
-    if (link_[At(first, kIn)] != kToEdge) continue;
-    LinkedPath& path = paths.emplace_back();
-    path.first_frame = first / graph_.cells;
-    Node node = first;
-    path.cells.push_back(static_cast<CellIndex>(node % graph_.cells));
-    while (link_[At(node, kOut)] != kToEdge) {
-      node = Follow(node, kOut);
-      path.cells.push_back(static_cast<CellIndex>(node % graph_.cells));
+  std::vector<std::pair<CellIndex, NodeId>> beginnings;
+  const auto cell = [this](NodeId id) {
+    return static_cast<CellIndex>(network_.Cell(nodes_[id].column, nodes_[id].row));
+  };
+  for (std::int64_t frame = nodes_.first_frame(); frame < nodes_.end_frame(); ++frame) {
+    beginnings.clear();
+    nodes_.ForEach(frame, [&](NodeId id) {
+      if (nodes_[id].link[kIn] == kToEdge) beginnings.emplace_back(cell(id), id);
+    });
+    std::sort(beginnings.begin(), beginnings.end());
+    for (const auto& [first_cell, first] : beginnings) {
+      LinkedPath& path = paths.emplace_back();
+      path.first_frame = frame;
+      for (Link link = first; link != kToEdge; link = nodes_[link].link[kOut]) {
+        path.cells.push_back(cell(link));
+      }
     }
   }
   return paths;
 }
 
+Cost FlowSolver::FrameCost(std::int64_t frame) const {
+  Cost total = 0;
+  nodes_.ForEach(frame, [&](NodeId id) {
+    const Node& node = nodes_[id];
+    if (!node.Carries()) return;
+    total += node.cost;
+    if (node.link[kIn] == kToEdge) total += network_.entry_cost;
+    const Link next = node.link[kOut];
+    total += next == kToEdge ? network_.exit_cost : MoveCost(node, nodes_[next]);
+  });
+  return total;
+}
+
 Cost FlowSolver::TotalCost() const {
   Cost total = 0;
-  for (Node node = 0; node < graph_.node_count(); ++node) {
-    if (!Carries(node)) continue;
-    total += graph_.node_cost[node];
-    if (link_[At(node, kIn)] == kToEdge) total += graph_.entry_cost;
-    const Link next = link_[At(node, kOut)];
-    total += next == kToEdge ? graph_.exit_cost : graph_.moves[static_cast<std::size_t>(next)].cost;
+  for (std::int64_t frame = nodes_.first_frame(); frame < nodes_.end_frame(); ++frame) {
+    total += FrameCost(frame);
   }
   return total;
 }

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "vantage/base/run_control.h"
-#include "vantage/linking/layered_graph.h"
+#include "vantage/linking/network.h"
+#include "vantage/linking/node_store.h"
 
 /// Internal to the linking module.
 
@@ -27,13 +28,11 @@ namespace vantage::linking {
 /// every residual arc u -> w has a reduced cost, cost + y(u) - y(w), of at least 0. A pseudo-flow
 /// like that with every vertex in balance is a minimum-cost flow (reduced-cost optimality,
 /// theorem 9.3).
-///  1. Start: y = 0, and exactly the arcs with c(v) < 0 carry flow. The reversed arcs cost -c(v) >
-///  0,
-///     all others at least 0, so the condition holds without any search. Every such node has one
-///     unit too many at out(v) and one too few at in(v).
+///  1. Start: y = 0, and exactly the arcs with c(v) < 0 carry flow. The reversed arcs cost
+///     -c(v) > 0, all others at least 0, so the condition holds without any search. Every such node
+///     has one unit too many at out(v) and one too few at in(v).
 ///  2. Each excess goes along a shortest residual path to the nearest in(w) that lacks a unit, or
-///  to
-///     the edge, whose balance is settled by step 3.
+///     to the edge, whose balance is settled by step 3.
 ///  3. Each lack left over is filled along a shortest residual path that comes from the edge.
 /// A shortest path and the update of potentials that belongs to it keep the condition (lemma 9.12),
 /// whichever vertices they join, and each takes away one imbalance: it ends at the exact optimum.
@@ -43,60 +42,74 @@ namespace vantage::linking {
 /// Why it is fast: people are seen in most frames, so nearly every excess finds its target one move
 /// ahead at cost 0. A search goes only as far as its target, in cost, and cells where nobody is
 /// seen cost much; whole tracks are never searched.
+///
+/// A stream. Frames may be added after the flow was settled, and the oldest dropped:
+///  - A new frame takes from the frame before the right to end everywhere: paths that ended there
+///    have an excess again. Its nodes get the largest potentials <= 0 that the new arcs allow
+///    (AddFrame), so the condition holds, and settling goes on from there.
+///  - Dropping a frame fixes the flow in it and takes its residual arcs away. Fewer arcs keep the
+///    condition: the flow stays optimal among those that continue what was dropped.
 class FlowSolver {
  public:
   /// Changes the time taken, never the optimum. In expansions of vertices.
   struct Effort {
     /// A target that takes more than this to find is far.
-    std::int64_t nearby = 5000;
+    std::int64_t nearby = 2000;
     /// Searches for far targets cost this much, as a share of the nodes, between sweeps.
-    double share_between_sweeps = 0.5;
+    double share_between_sweeps = 0.02;
   };
 
-  explicit FlowSolver(const LayeredGraph& graph) : FlowSolver(graph, Effort{}) {}
-  FlowSolver(const LayeredGraph& graph, const Effort& effort);
+  explicit FlowSolver(const Network& network) : FlowSolver(network, Effort{}) {}
+  FlowSolver(const Network& network, const Effort& effort);
 
-  /// Finds the minimum-cost flow. False when stopped by the caller.
-  bool Solve(const RunControl& control);
+  /// Adds the next frame, which CheckFrame has passed; `probability` must outlive the frame here.
+  void AddFrame(std::span<const float> probability);
+
+  /// Finds the minimum-cost flow over the frames that are here. False when stopped by the caller.
+  bool Settle(const RunControl& control);
 
   /// Takes paths away, each time the one whose loss costs least (rerouting the others), until at
   /// most `count` are left: a shortest residual path from the edge's end of paths to their
   /// beginning. It leaves a minimum-cost flow of its number of paths (theorem 9.3 once more), and
-  /// since the optimal cost is convex in that number, the best of at most `count`. After Solve.
-  /// False when stopped.
+  /// since the optimal cost is convex in that number, the best of at most `count`. After Settle;
+  /// no frame may be added afterwards. False when stopped.
   bool KeepAtMost(std::int64_t count, const RunControl& control);
 
-  /// The paths, each a first node and the cells after it, in the order of first nodes.
+  /// Forgets the oldest frame, whose flow is final. After Settle.
+  void DropFrame() { nodes_.DropFrame(); }
+
+  const NodeStore& nodes() const { return nodes_; }
+
+  /// The paths, each a first node and the cells after it, in the order of first nodes. While no
+  /// frame was dropped.
   std::vector<LinkedPath> Paths() const;
-  /// Sum of the costs of all arcs that carry flow.
+
+  /// What the flow through a frame costs: its nodes, the moves on from them, entries and exits.
+  Cost FrameCost(std::int64_t frame) const;
+  /// Sum over all frames that are here.
   Cost TotalCost() const;
 
  private:
-  enum Side : std::uint32_t { kIn = 0, kOut = 1 };
-  /// 2 * node + side.
-  using Vertex = std::uint32_t;
-  static constexpr Vertex kEdge = ~Vertex{0};
-
-  /// How the flow goes on from in(v) backward in time, from out(v) forward: the number of a move,
-  /// or one of these.
-  using Link = std::int16_t;
-  static constexpr Link kToEdge = -1;   // the path begins or ends here
-  static constexpr Link kOpen = -2;     // the node carries flow that is not connected: an imbalance
-  static constexpr Link kUnused = -3;   // the node carries no flow
-  static constexpr Link kBlocked = -4;  // an obstacle
-
-  struct Label {
+  struct QueueEntry {
     Cost distance;
-    Vertex parent;
+    std::int32_t order;  // among equals the one farthest along goes first, as if sent straight on
+    Vertex vertex;
+    friend auto operator<=>(const QueueEntry&, const QueueEntry&) = default;
   };
-  using QueueEntry = std::pair<Cost, Vertex>;  // ties go to the lower vertex: same on every machine
   using Arc = std::pair<Vertex, Vertex>;
 
-  static constexpr Side Other(Side side) { return side == kIn ? kOut : kIn; }
-  static constexpr Vertex At(Node node, Side side) { return 2 * node + side; }
-  static constexpr Node NodeOf(Vertex vertex) { return vertex / 2; }
-  static constexpr Side SideOf(Vertex vertex) { return static_cast<Side>(vertex % 2); }
-  bool Carries(Node node) const { return link_[At(node, kIn)] > kUnused; }
+  bool IsEntrance(const Node& node) const {
+    return node.frame == 0 || network_.access[network_.Cell(node.column, node.row)] != 0;
+  }
+  bool IsExit(const Node& node) const {
+    return node.frame + 1 == nodes_.end_frame() ||
+           network_.access[network_.Cell(node.column, node.row)] != 0;
+  }
+  Cost MoveCost(const Node& a, const Node& b) const {
+    return network_.MoveCost(b.column - a.column, b.row - a.row);
+  }
+  void ReopenLastFrame();
+  void SetFirstPotentials();
 
   /// Time runs forward in a search from an excess (kNear = kOut) and backward in one from a lack
   /// (kNear = kIn); the network is its own mirror image with in and out, begin and end exchanged
@@ -108,53 +121,42 @@ class FlowSolver {
   /// Settles all imbalances from which a search of direction kNear starts.
   template <Side kNear>
   bool SettleAll(const RunControl& control);
-  /// Potentials from the distances between every imbalance that is left and its nearest target: one
-  /// Dijkstra's algorithm from all targets at once, against the direction of the searches that
-  /// follow. kNear: the side on which the targets are.
-  template <Side kNear>
-  bool Spread(std::int64_t imbalances, const RunControl& control);
-  /// Starts from both sides of the edge and the open vertices of side kNear.
-  template <Side kNear>
-  void StartSpread();
   template <Side kNear>
   void Expand(Vertex vertex, Cost distance);
   template <Side kNear>
-  void ExpandMoves(Node node, Cost base);
+  void ExpandMoves(NodeId id, Cost base);
   template <Side kNear>
   void Relax(Vertex to, Cost distance, Vertex from);
+  template <Side kNear>
+  QueueEntry Entry(Cost distance, Vertex vertex) const;
   void OfferTarget(Vertex target, Cost distance, Vertex from);
   QueueEntry PopNearest();
   template <Side kNear>
   void UpdatePotentials();
   void ForgetLabels();
   std::vector<Arc> PathToTarget() const;
-  template <Side kNear>
-  static Cost Mirror(Cost potential) {
-    return kNear == kOut ? potential : -potential;
-  }
-
-  /// Along the arcs of a residual path, in any order; `near` as in Search.
   void PushFlowAlong(const std::vector<Arc>& arcs, Side near);
-  Link LinkBetween(Node earlier, Node later) const;
-  Node Follow(Node node, Side side) const;
 
-  const LayeredGraph& graph_;
+  Link& LinkOf(Vertex vertex) { return nodes_[NodeOf(vertex)].link[SideOf(vertex)]; }
+  Cost& PotentialOf(Vertex vertex) { return nodes_[NodeOf(vertex)].potential[SideOf(vertex)]; }
+  Cost& DistanceOf(Vertex vertex) { return nodes_[NodeOf(vertex)].distance[SideOf(vertex)]; }
+
+  const Network& network_;
   const Effort effort_;
-  std::vector<Link> link_;       // by vertex
-  std::vector<Cost> potential_;  // by vertex
+  NodeStore nodes_;
+  std::vector<NodeId> open_;  // nodes with an imbalance, the oldest first
 
   // The edge is one vertex until paths are taken away; then its two sides part.
   Cost edge_potential_[2] = {0, 0};
 
   // One search at a time.
-  enum class Targets { kImbalances, kBeginnings, kNone };
+  enum class Targets { kImbalances, kBeginnings };
   Targets targets_ = Targets::kImbalances;
-  std::vector<Label> label_;     // by vertex; kUnreached outside a search
-  std::vector<Vertex> reached_;  // vertices with a label
+  std::vector<Vertex> reached_;  // vertices with a distance
   std::vector<QueueEntry> queue_;
+  std::vector<const Move*> absent_;  // of one expansion
   Cost target_distance_ = 0;
   Arc target_arc_ = {kEdge, kEdge};
-  std::int64_t expansions_ = 0;  // in the searches since the last sweep
 };
 
 }  // namespace vantage::linking

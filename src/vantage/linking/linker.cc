@@ -6,23 +6,58 @@
 
 #include "vantage/base/stopwatch.h"
 #include "vantage/linking/flow_solver.h"
-#include "vantage/linking/layered_graph.h"
+#include "vantage/linking/network.h"
 
 namespace vantage {
 namespace {
 
+// Sums of costs stay exact in double precision, which the sweeps use: 2^29 nodes of 2^24 units, the
+// cost at the default clip.
+constexpr double kLargestSum = 0x1p53;
+
+Status CheckSizes(const LinkingProblem& problem, const linking::Network& network) {
+  if (problem.frames < 0) {
+    return Fail("linking: there are {} frames; there must be at least 0", problem.frames);
+  }
+  const double nodes = static_cast<double>(problem.frames) * static_cast<double>(network.cells());
+  if (nodes * network.node_cost.largest() > kLargestSum) {
+    return Fail(
+        "linking: {} frames of {} x {} cells are more than can be linked at once; link a shorter "
+        "stretch, use larger cells, or link as a stream",
+        problem.frames, problem.columns, problem.rows);
+  }
+  if (problem.probability.size() != static_cast<std::size_t>(problem.frames) * network.cells()) {
+    return Fail("linking: probability has {} values; it must have {}", problem.probability.size(),
+                static_cast<std::size_t>(problem.frames) * network.cells());
+  }
+  return {};
+}
+
 Result<LinkingResult> Link(const LinkingProblem& problem, const LinkingOptions& options,
                            const RunControl& control) {
-  VANTAGE_ASSIGN_OR_RETURN(const linking::LayeredGraph graph,
-                           linking::MakeLayeredGraph(problem, options));
-  linking::FlowSolver solver(graph);
-  if (!solver.Solve(control)) return Cancelled();
+  VANTAGE_ASSIGN_OR_RETURN(const linking::Network network,
+                           linking::MakeNetwork({.columns = problem.columns,
+                                                 .rows = problem.rows,
+                                                 .access = problem.access,
+                                                 .obstacle = problem.obstacle,
+                                                 .cell_m = problem.cell_m,
+                                                 .frames_per_second = problem.frames_per_second},
+                                                options));
+  VANTAGE_RETURN_IF_ERROR(CheckSizes(problem, network));
+  linking::FlowSolver solver(network);
+  for (std::int64_t frame = 0; frame < problem.frames; ++frame) {
+    const std::span<const float> map = problem.probability.subspan(
+        static_cast<std::size_t>(frame) * network.cells(), network.cells());
+    VANTAGE_RETURN_IF_ERROR(linking::CheckFrame(network, map, frame));
+    solver.AddFrame(map);
+  }
+  if (!solver.Settle(control)) return Cancelled();
   if (options.max_paths > 0 && !solver.KeepAtMost(options.max_paths, control)) return Cancelled();
   LinkingResult result;
   result.paths = solver.Paths();
   result.report.cost = static_cast<double>(solver.TotalCost()) / linking::kUnitsPerCost;
   result.report.paths = std::ssize(result.paths);
-  result.report.nodes = graph.node_count();
+  result.report.nodes = problem.frames * static_cast<std::int64_t>(network.cells());
   return result;
 }
 

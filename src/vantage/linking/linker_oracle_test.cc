@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "vantage/linking/flow_solver.h"
-#include "vantage/linking/layered_graph.h"
 #include "vantage/linking/lemon_oracle.h"
 #include "vantage/linking/linker.h"
+#include "vantage/linking/network.h"
 
 namespace vantage {
 namespace {
@@ -37,6 +37,13 @@ struct Instance {
             .probability = probability,
             .access = access,
             .obstacle = obstacle};
+  }
+  StreamGrid grid() const {
+    return {.columns = columns, .rows = rows, .access = access, .obstacle = obstacle};
+  }
+  std::span<const float> Map(int frame) const {
+    return std::span(probability)
+        .subspan(static_cast<std::size_t>(frame * cells()), static_cast<std::size_t>(cells()));
   }
 };
 
@@ -228,17 +235,42 @@ TEST(LinkerOracle, AnyEffortFindsTheOptimum) {
     instance.options.max_paths = 0;
     const Result<LinkingResult> right = LinkPaths(instance.problem(), instance.options);
     ASSERT_TRUE(right) << right.error().message;
-    const Result<linking::LayeredGraph> graph =
-        linking::MakeLayeredGraph(instance.problem(), instance.options);
-    ASSERT_TRUE(graph);
+    const Result<linking::Network> network =
+        linking::MakeNetwork(instance.grid(), instance.options);
+    ASSERT_TRUE(network);
     for (const linking::FlowSolver::Effort effort :
          {linking::FlowSolver::Effort{.nearby = 1, .share_between_sweeps = 0},
           {.nearby = 0, .share_between_sweeps = 0.1},
           {.nearby = 5, .share_between_sweeps = 0.01}}) {
-      linking::FlowSolver solver(*graph, effort);
-      ASSERT_TRUE(solver.Solve({}));
+      linking::FlowSolver solver(*network, effort);
+      for (int frame = 0; frame < instance.frames; ++frame) solver.AddFrame(instance.Map(frame));
+      ASSERT_TRUE(solver.Settle({}));
       ASSERT_EQ(solver.TotalCost(), Units(right->report.cost));
       ASSERT_EQ(CheckPaths(instance, solver.Paths()), solver.TotalCost());
+    }
+  }
+}
+
+// Settled after every frame, the flow is the optimum of the frames so far.
+TEST(LinkerOracle, FramesMayBeAddedToASettledFlow) {
+  for (unsigned seed = 2000; seed < 2500; ++seed) {
+    SCOPED_TRACE(seed);
+    Instance instance = RandomInstance(seed, Limits{});
+    instance.options.max_paths = 0;
+    const Result<linking::Network> network =
+        linking::MakeNetwork(instance.grid(), instance.options);
+    ASSERT_TRUE(network);
+    linking::FlowSolver solver(*network);
+    Instance so_far = instance;
+    for (so_far.frames = 1; so_far.frames <= instance.frames; ++so_far.frames) {
+      solver.AddFrame(instance.Map(so_far.frames - 1));
+      ASSERT_TRUE(solver.Settle({}));
+      so_far.probability.assign(instance.probability.begin(),
+                                instance.probability.begin() + so_far.frames * instance.cells());
+      const Result<LinkingResult> right = LinkPaths(so_far.problem(), so_far.options);
+      ASSERT_TRUE(right) << right.error().message;
+      ASSERT_EQ(solver.TotalCost(), Units(right->report.cost)) << so_far.frames << " frames";
+      ASSERT_EQ(CheckPaths(so_far, solver.Paths()), solver.TotalCost());
     }
   }
 }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "vantage/base/test_support.h"
-#include "vantage/linking/layered_graph.h"
+#include "vantage/linking/node_cost.h"
 
 namespace vantage {
 namespace {
@@ -141,16 +141,21 @@ TEST(Linker, SmallestSizes) {
 }
 
 TEST(Linker, CostsAreClippedOnBothSides) {
-  using linking::NodeCost;
+  const linking::NodeCost cost(1e-6);
   const double largest = std::log((1 - 1e-6) / 1e-6);
-  EXPECT_EQ(NodeCost(0.0, 1e-6), linking::ToUnits(largest));
-  EXPECT_EQ(NodeCost(1.0, 1e-6), -linking::ToUnits(largest));
-  EXPECT_EQ(NodeCost(1e-7, 1e-6), linking::ToUnits(largest));
-  EXPECT_EQ(NodeCost(0.5, 1e-6), 0);
-  EXPECT_EQ(NodeCost(0.9, 1e-6), linking::ToUnits(-std::log(9.0)));
-  // 1 - clip rounds to 1 here; the cost must stay finite.
-  EXPECT_EQ(NodeCost(1.0, 1e-300), -NodeCost(0.0, 1e-300));
-  EXPECT_NEAR(NodeCost(0.0, 1e-300) / linking::kUnitsPerCost, 300 * std::log(10.0), 1e-5);
+  EXPECT_EQ(cost(0.0F), linking::ToUnits(largest));
+  EXPECT_EQ(cost(1.0F), -linking::ToUnits(largest));
+  EXPECT_EQ(cost(1e-7F), linking::ToUnits(largest));
+  EXPECT_EQ(cost(0.5F), 0);
+  EXPECT_EQ(cost(0.75F), linking::ToUnits(-std::log(3.0)));
+  // The library's logarithm, at most a rounding of the unit apart, over many floats.
+  for (float p = 1e-6F; p < 1; p *= 1.001F) {
+    const double right = std::log((1 - static_cast<double>(p)) / static_cast<double>(p));
+    ASSERT_NEAR(cost(p) / linking::kUnitsPerCost, right, 0.5001 / linking::kUnitsPerCost);
+  }
+  const linking::NodeCost tiny_clip(1e-300);
+  EXPECT_EQ(tiny_clip(1.0F), -tiny_clip(0.0F));
+  EXPECT_NEAR(tiny_clip(0.0F) / linking::kUnitsPerCost, 300 * std::log(10.0), 1e-5);
 }
 
 TEST(Linker, PeopleMoveAtMostAsFastAsAllowed) {
@@ -198,7 +203,7 @@ TEST(Linker, RefusesWhatIsNotAProblem) {
   EXPECT_THAT(message(wrong, {}), HasSubstr("at least 1 x 1"));
   wrong.columns = wrong.rows = std::numeric_limits<int>::max();
   wrong.frames = std::numeric_limits<std::int64_t>::max();
-  EXPECT_THAT(message(wrong, {}), HasSubstr("more than 2^27 nodes"));
+  EXPECT_THAT(message(wrong, {}), HasSubstr("at most 32767 on a side"));
 
   corridor.Set(1, 2, std::numeric_limits<float>::quiet_NaN());
   EXPECT_THAT(message(corridor.problem(), {}), HasSubstr("cell 2 in frame 1 is nan"));

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vantage/base/result.h"
+#include "vantage/linking/linker.h"
+#include "vantage/linking/node_cost.h"
+#include "vantage/linking/stream_linker.h"
+
+/// Internal to the linking module.
+
+namespace vantage::linking {
+
+/// A step from a cell to one a few columns and rows away in the next frame.
+struct Move {
+  int columns = 0;
+  int rows = 0;
+  Cost cost = 0;  ///< at least 0
+};
+
+/// What all frames of the layered graph have in common. Nodes are cells at an instant; moves lead
+/// to the next frame. No arc is stored.
+struct Network {
+  int columns = 0;
+  int rows = 0;
+  /// By length, the shortest first: where nothing else decides, people take the shorter step. With
+  /// every move its opposite is there, at the same cost.
+  std::vector<Move> moves;
+  /// Most columns or rows of a move.
+  int depth = 0;
+  /// What a path pays where it begins and where it ends; together the birth cost.
+  Cost entry_cost = 0;
+  Cost exit_cost = 0;
+  NodeCost node_cost{0.25};
+  std::vector<std::uint8_t> access;    ///< by cell
+  std::vector<std::uint8_t> obstacle;  ///< by cell
+
+  std::size_t cells() const { return access.size(); }
+  std::size_t Cell(int column, int row) const {
+    return static_cast<std::size_t>(column) +
+           static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);
+  }
+  bool Contains(int column, int row) const {
+    return column >= 0 && column < columns && row >= 0 && row < rows;
+  }
+  /// Cost of the move by so many columns and rows, which must be one.
+  Cost MoveCost(int column_step, int row_step) const {
+    return move_costs[static_cast<std::size_t>(column_step + depth +
+                                               (row_step + depth) * (2 * depth + 1))];
+  }
+
+  std::vector<Cost> move_costs;  ///< see MoveCost
+};
+
+/// Checks options and sizes.
+Result<Network> MakeNetwork(const StreamGrid& grid, const LinkingOptions& options);
+
+/// Checks that `probability` is one frame of the network: its size, every value in [0, 1]. `frame`
+/// is for the message.
+Status CheckFrame(const Network& network, std::span<const float> probability, std::int64_t frame);
+
+}  // namespace vantage::linking
