@@ -106,7 +106,12 @@ bool FlowSolver::SettleAll(const RunControl& control) {
     if (outcome == Outcome::kStopped) return false;
     if (outcome == Outcome::kGaveUp) waiting.push_back(vertex);
   }
+  const std::int64_t nodes = frames * static_cast<std::int64_t>(network_.cells());
+  const auto between_sweeps =
+      static_cast<std::int64_t>(effort_.share_between_sweeps * static_cast<double>(nodes));
+  expansions_ = between_sweeps;
   for (const Vertex vertex : waiting) {
+    if (expansions_ >= between_sweeps) SweepPotentials<kNear>();
     const QueueEntry start = Entry<kNear>(0, vertex);
     if (Search<kNear>(std::span(&start, 1), kUnlimited, control) == Outcome::kStopped) return false;
   }
@@ -124,6 +129,7 @@ bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
   }
   std::vector<QueueEntry> starts;
   while (std::ssize(ends) > count) {
+    SweepPotentials<kOut>();
     starts.clear();
     for (const Vertex end : ends) {
       starts.push_back(
@@ -167,9 +173,18 @@ FlowSolver::Outcome FlowSolver::Search(std::span<const QueueEntry> starts,
     }
   }
   if (control.Stopped()) return Outcome::kStopped;
+  expansions_ += expansions;
   PushFlowAlong(PathToTarget(), kNear);
   UpdatePotentials<kNear>();
   return Outcome::kFound;
+}
+
+template <Side kNear>
+void FlowSolver::SweepPotentials() {
+  const Cost near_edge = Sweep(network_, nodes_).SetPotentials<kNear>(targets_);
+  edge_potential_[kNear] = -Mirror<kNear>(near_edge);
+  edge_potential_[Other(kNear)] = 0;
+  expansions_ = 0;
 }
 
 template <Side kNear>

@@ -10,6 +10,7 @@
 #include "vantage/base/run_control.h"
 #include "vantage/linking/network.h"
 #include "vantage/linking/node_store.h"
+#include "vantage/linking/sweep.h"
 
 /// Internal to the linking module.
 
@@ -121,6 +122,9 @@ class FlowSolver {
   /// Settles all imbalances from which a search of direction kNear starts.
   template <Side kNear>
   bool SettleAll(const RunControl& control);
+  /// Potentials under which the reduced cost to the nearest target is 0, for searches to come.
+  template <Side kNear>
+  void SweepPotentials();
   template <Side kNear>
   void Expand(Vertex vertex, Cost distance);
   template <Side kNear>
@@ -150,12 +154,12 @@ class FlowSolver {
   Cost edge_potential_[2] = {0, 0};
 
   // One search at a time.
-  enum class Targets { kImbalances, kBeginnings };
   Targets targets_ = Targets::kImbalances;
   std::vector<Vertex> reached_;  // vertices with a distance
   std::vector<QueueEntry> queue_;
   std::vector<const Move*> absent_;  // of one expansion
   Cost target_distance_ = 0;
+  std::int64_t expansions_ = 0;  // since the last sweep
   Arc target_arc_ = {kEdge, kEdge};
 };
 

@@ -3,24 +3,23 @@
 #include "vantage/linking/node_store.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace vantage::linking {
-namespace {
-
-constexpr std::size_t kSmallestTable = 64;
-// Cells of neighbouring rows come to lie apart, those of a row beside each other.
-constexpr std::size_t kRowStride = 21;
-
-}  // namespace
-
-NodeStore::NodeStore(const Network& network) : network_(network) {}
+NodeStore::NodeStore(const Network& network)
+    : network_(network),
+      tile_columns_((network.columns + kTileMask) >> kTileShift),
+      tiles_per_frame_(static_cast<std::size_t>(tile_columns_) *
+                       static_cast<std::size_t>((network.rows + kTileMask) >> kTileShift)) {
+  NewTile();
+}
 
 std::vector<NodeId> NodeStore::AddFrame(std::span<const float> probability) {
   const std::int64_t number = end_frame();
   Frame& frame = frames_.emplace_back();
   frame.probability = probability;
-  frame.table.resize(kSmallestTable);
+  frame.tiles.assign(tiles_per_frame_, kNoTile);
   std::vector<NodeId> people;
   constexpr std::size_t kBlock = 64;
   for (std::size_t block = 0; block < probability.size(); block += kBlock) {
@@ -39,36 +38,22 @@ std::vector<NodeId> NodeStore::AddFrame(std::span<const float> probability) {
 }
 
 void NodeStore::DropFrame() {
-  ForEach(first_frame_, [this](NodeId node) { free_.push_back(node); });
+  const Frame& frame = frames_.front();
+  free_.insert(free_.end(), frame.nodes.begin(), frame.nodes.end());
+  std::copy_if(frame.tiles.begin(), frame.tiles.end(), std::back_inserter(free_tiles_),
+               [](TileId tile) { return tile != kNoTile; });
   frames_.pop_front();
   ++first_frame_;
 }
 
-std::size_t NodeStore::Slot(const std::vector<Entry>& table, std::uint32_t cell, int column,
-                            int row) {
-  const std::size_t mask = table.size() - 1;
-  std::size_t slot =
-      (static_cast<std::size_t>(column) + kRowStride * static_cast<std::size_t>(row)) & mask;
-  while (table[slot].node != kNoNode && table[slot].cell != cell) slot = (slot + 1) & mask;
-  return slot;
-}
-
-NodeId NodeStore::Find(std::int64_t frame, int column, int row) const {
-  const std::vector<Entry>& table = At(frame).table;
-  return table[Slot(table, static_cast<std::uint32_t>(network_.Cell(column, row)), column, row)]
-      .node;
-}
-
 NodeId NodeStore::FindOrAdd(std::int64_t frame_number, int column, int row) {
   Frame& frame = At(frame_number);
-  const auto cell = static_cast<std::uint32_t>(network_.Cell(column, row));
-  std::size_t slot = Slot(frame.table, cell, column, row);
-  if (frame.table[slot].node != kNoNode) return frame.table[slot].node;
-  if (2 * ++frame.count > frame.table.size()) {
-    Grow(frame);
-    slot = Slot(frame.table, cell, column, row);
-  }
-  const NodeId id = NewNode();
+  TileId& tile = frame.tiles[TilePlace(column, row)];
+  if (tile == kNoTile) tile = NewTile();
+  NodeId& id = tiles_[tile].nodes[PlaceInTile(column, row)];
+  if (id != kNoNode) return id;
+  id = NewNode();
+  frame.nodes.push_back(id);
   Node& node = nodes_[id];
   node = Node{.frame = static_cast<std::int32_t>(frame_number),
               .column = static_cast<std::int16_t>(column),
@@ -77,18 +62,7 @@ NodeId NodeStore::FindOrAdd(std::int64_t frame_number, int column, int row) {
   for (const Side side : {kIn, kOut}) {
     node.potential[side] = PotentialOf(frame_number, column, row, side);
   }
-  frame.table[slot] = {cell, id};
   return id;
-}
-
-void NodeStore::Grow(Frame& frame) const {
-  std::vector<Entry> table(2 * frame.table.size());
-  for (const Entry& entry : frame.table) {
-    if (entry.node == kNoNode) continue;
-    const auto cell = static_cast<int>(entry.cell);
-    table[Slot(table, entry.cell, cell % network_.columns, cell / network_.columns)] = entry;
-  }
-  frame.table = std::move(table);
 }
 
 NodeId NodeStore::NewNode() {
@@ -101,6 +75,17 @@ NodeId NodeStore::NewNode() {
   return static_cast<NodeId>(nodes_.size() - 1);
 }
 
+NodeStore::TileId NodeStore::NewTile() {
+  if (free_tiles_.empty()) {
+    free_tiles_.push_back(static_cast<TileId>(tiles_.size()));
+    tiles_.emplace_back();
+  }
+  const TileId id = free_tiles_.back();
+  free_tiles_.pop_back();
+  std::fill(std::begin(tiles_[id].nodes), std::end(tiles_[id].nodes), kNoNode);
+  return id;
+}
+
 std::int32_t NodeStore::CostOf(std::int64_t frame, int column, int row) const {
   return network_.node_cost(At(frame).probability[network_.Cell(column, row)]);
 }
@@ -108,14 +93,17 @@ std::int32_t NodeStore::CostOf(std::int64_t frame, int column, int row) const {
 Cost NodeStore::PotentialOf(std::int64_t frame_number, int column, int row, Side side) const {
   const Frame& frame = At(frame_number);
   if (frame.potentials.empty()) return 0;
-  const auto potential = static_cast<Cost>(frame.potentials[network_.Cell(column, row)]);
+  const auto potential =
+      static_cast<Cost>(frame.potentials_sign * frame.potentials[network_.Cell(column, row)]);
   if (side == frame.potentials_side) return potential;
   const Cost cost = CostOf(frame_number, column, row);
   return side == kOut ? potential + cost : potential - cost;
 }
 
-void NodeStore::SetPotentials(std::int64_t frame, Side side, std::vector<double> potentials) {
-  At(frame).potentials = std::move(potentials);
+void NodeStore::SetPotentials(std::int64_t frame, Side side, double sign,
+                              std::vector<double> values) {
+  At(frame).potentials = std::move(values);
+  At(frame).potentials_sign = sign;
   At(frame).potentials_side = side;
 }
 

@@ -82,27 +82,31 @@ class NodeStore {
   /// Of a node that nobody has touched.
   Cost PotentialOf(std::int64_t frame, int column, int row, Side side) const;
 
-  /// The nodes of a frame, in no particular order.
+  /// The nodes of a frame, in the order of their coming.
   template <class Visit>
   void ForEach(std::int64_t frame, Visit visit) const;
   std::int64_t count() const { return std::ssize(nodes_) - std::ssize(free_); }
   std::span<const float> Probability(std::int64_t frame) const { return At(frame).probability; }
 
-  /// Potentials of all nodes of a frame on one side, for those that nobody has touched; the other
-  /// side's follow from out = in + cost.
-  void SetPotentials(std::int64_t frame, Side side, std::vector<double> potentials);
+  /// Potentials of all nodes of a frame on one side, sign * value, for those that nobody has
+  /// touched; the other side's follow from out = in + cost.
+  void SetPotentials(std::int64_t frame, Side side, double sign, std::vector<double> values);
 
  private:
-  /// Cells of one frame to nodes: open addressing, the neighbours in a row beside each other.
-  struct Entry {
-    std::uint32_t cell = 0;
-    NodeId node = kNoNode;
+  /// Cells of one frame to nodes, in tiles of 8 x 8 cells; where nobody came by there is no tile.
+  static constexpr int kTileShift = 3;
+  static constexpr int kTileMask = (1 << kTileShift) - 1;
+  using TileId = std::uint32_t;
+  static constexpr TileId kNoTile = 0;
+  struct Tile {
+    NodeId nodes[1 << (2 * kTileShift)];
   };
   struct Frame {
     std::span<const float> probability;
-    std::vector<Entry> table;  // a power of two long
-    std::size_t count = 0;
+    std::vector<TileId> tiles;       // by place on the grid
+    std::vector<NodeId> nodes;       // in the order of their coming
     std::vector<double> potentials;  // empty: 0
+    double potentials_sign = 1;
     Side potentials_side = kIn;
   };
 
@@ -110,22 +114,33 @@ class NodeStore {
     return frames_[static_cast<std::size_t>(frame - first_frame_)];
   }
   Frame& At(std::int64_t frame) { return frames_[static_cast<std::size_t>(frame - first_frame_)]; }
-  static std::size_t Slot(const std::vector<Entry>& table, std::uint32_t cell, int column, int row);
-  void Grow(Frame& frame) const;
+  std::size_t TilePlace(int column, int row) const {
+    return static_cast<std::size_t>((column >> kTileShift) + (row >> kTileShift) * tile_columns_);
+  }
+  static std::size_t PlaceInTile(int column, int row) {
+    return static_cast<std::size_t>((column & kTileMask) + ((row & kTileMask) << kTileShift));
+  }
   NodeId NewNode();
+  TileId NewTile();
 
   const Network& network_;
+  const int tile_columns_;
+  const std::size_t tiles_per_frame_;
   std::deque<Frame> frames_;
   std::int64_t first_frame_ = 0;
   std::vector<Node> nodes_;
   std::vector<NodeId> free_;
+  std::vector<Tile> tiles_;  // the first is empty for ever: the one that is not there
+  std::vector<TileId> free_tiles_;
 };
+
+inline NodeId NodeStore::Find(std::int64_t frame, int column, int row) const {
+  return tiles_[At(frame).tiles[TilePlace(column, row)]].nodes[PlaceInTile(column, row)];
+}
 
 template <class Visit>
 void NodeStore::ForEach(std::int64_t frame, Visit visit) const {
-  for (const Entry& entry : At(frame).table) {
-    if (entry.node != kNoNode) visit(entry.node);
-  }
+  for (const NodeId id : At(frame).nodes) visit(id);
 }
 
 }  // namespace vantage::linking
