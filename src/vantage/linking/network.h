@@ -44,6 +44,15 @@ struct Network {
     return static_cast<std::size_t>(column) +
            static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);
   }
+  /// Place of a cell in a frame that is padded on all sides by as many cells as a move may cross.
+  std::size_t Padded(int column, int row) const {
+    return static_cast<std::size_t>(column + depth) +
+           static_cast<std::size_t>(row + depth) * padded_columns();
+  }
+  std::size_t padded_columns() const { return static_cast<std::size_t>(columns + 2 * depth); }
+  std::size_t padded_cells() const {
+    return padded_columns() * static_cast<std::size_t>(rows + 2 * depth);
+  }
   bool Contains(int column, int row) const {
     return column >= 0 && column < columns && row >= 0 && row < rows;
   }

@@ -7,6 +7,11 @@
 #include <utility>
 
 namespace vantage::linking {
+namespace {
+
+constexpr std::size_t kBlock = 16;  // cells that are looked at together
+
+}  // namespace
 NodeStore::NodeStore(const Network& network)
     : network_(network),
       tile_columns_((network.columns + kTileMask) >> kTileShift),
@@ -21,7 +26,6 @@ std::vector<NodeId> NodeStore::AddFrame(std::span<const float> probability) {
   frame.probability = probability;
   frame.tiles.assign(tiles_per_frame_, kNoTile);
   std::vector<NodeId> people;
-  constexpr std::size_t kBlock = 64;
   for (std::size_t block = 0; block < probability.size(); block += kBlock) {
     const std::size_t end = std::min(block + kBlock, probability.size());
     unsigned any = 0;
@@ -87,17 +91,47 @@ NodeStore::TileId NodeStore::NewTile() {
 }
 
 std::int32_t NodeStore::CostOf(std::int64_t frame, int column, int row) const {
-  return network_.node_cost(At(frame).probability[network_.Cell(column, row)]);
+  const std::size_t cell = network_.Cell(column, row);
+  const Frame& at = At(frame);
+  return at.costs.empty() ? network_.node_cost(at.probability[cell]) : at.costs[cell];
 }
 
 Cost NodeStore::PotentialOf(std::int64_t frame_number, int column, int row, Side side) const {
   const Frame& frame = At(frame_number);
   if (frame.potentials.empty()) return 0;
   const auto potential =
-      static_cast<Cost>(frame.potentials_sign * frame.potentials[network_.Cell(column, row)]);
+      static_cast<Cost>(frame.potentials_sign * frame.potentials[network_.Padded(column, row)]);
   if (side == frame.potentials_side) return potential;
   const Cost cost = CostOf(frame_number, column, row);
   return side == kOut ? potential + cost : potential - cost;
+}
+
+// Maps have one value nearly everywhere: most blocks are done with one comparison a cell.
+std::span<const std::int32_t> NodeStore::Costs(std::int64_t frame_number) {
+  Frame& frame = At(frame_number);
+  if (!frame.costs.empty()) return frame.costs;
+  const std::span<const float> probability = frame.probability;
+  frame.costs.resize(probability.size());
+  float common = 0;
+  std::int32_t common_cost = network_.node_cost(common);
+  for (std::size_t block = 0; block < probability.size(); block += kBlock) {
+    const std::size_t end = std::min(block + kBlock, probability.size());
+    unsigned any = 0;
+    for (std::size_t i = block; i < end; ++i) {
+      any |= static_cast<unsigned>(probability[i] != common);
+      frame.costs[i] = common_cost;
+    }
+    if (any == 0) continue;
+    for (std::size_t i = block; i < end; ++i) {
+      frame.costs[i] = probability[i] == common ? common_cost : network_.node_cost(probability[i]);
+      // The value of two neighbours is the common one from there on.
+      if (i > block && probability[i] == probability[i - 1]) {
+        common = probability[i];
+        common_cost = frame.costs[i];
+      }
+    }
+  }
+  return frame.costs;
 }
 
 void NodeStore::SetPotentials(std::int64_t frame, Side side, double sign,

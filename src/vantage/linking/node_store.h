@@ -88,8 +88,10 @@ class NodeStore {
   std::int64_t count() const { return std::ssize(nodes_) - std::ssize(free_); }
   std::span<const float> Probability(std::int64_t frame) const { return At(frame).probability; }
 
-  /// Potentials of all nodes of a frame on one side, sign * value, for those that nobody has
-  /// touched; the other side's follow from out = in + cost.
+  /// The costs of all nodes of a frame, by cell; kept once they were asked for.
+  std::span<const std::int32_t> Costs(std::int64_t frame);
+  /// Potentials of all nodes of a frame on one side, sign * value by padded place, for those that
+  /// nobody has touched; the other side's follow from out = in + cost.
   void SetPotentials(std::int64_t frame, Side side, double sign, std::vector<double> values);
 
  private:
@@ -103,9 +105,10 @@ class NodeStore {
   };
   struct Frame {
     std::span<const float> probability;
-    std::vector<TileId> tiles;       // by place on the grid
-    std::vector<NodeId> nodes;       // in the order of their coming
-    std::vector<double> potentials;  // empty: 0
+    std::vector<TileId> tiles;        // by place on the grid
+    std::vector<NodeId> nodes;        // in the order of their coming
+    std::vector<std::int32_t> costs;  // empty: not asked for
+    std::vector<double> potentials;   // empty: 0
     double potentials_sign = 1;
     Side potentials_side = kIn;
   };

@@ -10,21 +10,8 @@ namespace vantage::linking {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr std::size_t kBlock = 16;
-
 double AsDouble(Cost distance) {
   return distance == kUnreached ? kFar : static_cast<double>(distance);
-}
-
-/// The value that most of a list have, if more than half do (Boyer and Moore's vote).
-float CommonValue(std::span<const float> values) {
-  float candidate = 0;
-  std::int64_t votes = 0;
-  for (const float value : values) {
-    if (votes == 0) candidate = value;
-    votes += value == candidate ? 1 : -1;
-  }
-  return candidate;
 }
 
 }  // namespace
@@ -32,29 +19,24 @@ float CommonValue(std::span<const float> values) {
 Sweep::Sweep(const Network& network, NodeStore& nodes)
     : network_(network),
       nodes_(nodes),
-      depth_(network.depth),
-      stride_(network.columns + 2 * network.depth),
-      padded_far_(static_cast<std::size_t>(stride_) *
-                      static_cast<std::size_t>(network.rows + 2 * network.depth),
-                  kFar),
-      near_(padded_far_.size(), kFar) {
+      access_(static_cast<std::size_t>(network.rows)),
+      obstacles_(static_cast<std::size_t>(network.rows)),
+      frames_(static_cast<std::size_t>(nodes.end_frame() - nodes.first_frame())),
+      all_(static_cast<std::size_t>(network.rows), Stretch{0, network.columns}),
+      todo_(all_.size()),
+      fresh_(network.padded_cells(), kFar) {
   for (const Move& move : network.moves) {
     moves_.push_back(
-        {.offset = move.columns + move.rows * stride_, .cost = static_cast<double>(move.cost)});
+        {.offset = move.columns + move.rows * static_cast<std::ptrdiff_t>(network.padded_columns()),
+         .cost = static_cast<double>(move.cost)});
   }
   for (int row = 0; row < network.rows; ++row) {
     for (int column = 0; column < network.columns; ++column) {
       const std::size_t cell = network.Cell(column, row);
-      if (network.access[cell] != 0) access_.push_back(Padded(column, row));
-      if (network.obstacle[cell] != 0) obstacles_.push_back(cell);
+      if (network.access[cell] != 0) access_[static_cast<std::size_t>(row)].push_back(column);
+      if (network.obstacle[cell] != 0) obstacles_[static_cast<std::size_t>(row)].push_back(column);
     }
   }
-  if (frames() > 0) common_ = CommonValue(nodes.Probability(nodes.first_frame()));
-  common_cost_ = network.node_cost(common_);
-  cost_.assign(network.cells(), common_cost_);
-  fresh_.resize(network.cells());
-  far_.resize(static_cast<std::size_t>(frames()));
-  fell_.resize(far_.size(), 0);
 }
 
 template <Side kNear>
@@ -62,16 +44,19 @@ Cost Sweep::SetPotentials(Targets targets) {
   StartCarriers<kNear>(targets);
   FirstPass<kNear>();
   while (FollowPaths<kNear>(targets)) {
-    for (std::int64_t step = 0; step < frames(); ++step) {
-      const bool fell_ahead = step > 0 && Fell(FrameAt<kNear>(step - 1));
-      if (fell_ahead || near_edge_fell_) DoFrame<kNear>(step);
-      if (step > 0) Fell(FrameAt<kNear>(step - 1)) = 0;
+    for (std::int64_t step = 0; step < frame_count(); ++step) {
+      if (near_edge_fell_) {
+        DoFrame<kNear>(step, all_);
+      } else if (step > 0 && !At(FrameAt<kNear>(step - 1)).fell.empty()) {
+        DoFrame<kNear>(step, ToDoAfter(At(FrameAt<kNear>(step - 1))));
+      }
+      if (step > 0) At(FrameAt<kNear>(step - 1)).fell.clear();
     }
     near_edge_fell_ = false;
   }
-  for (std::int64_t step = 0; step < frames(); ++step) {
+  for (std::int64_t step = 0; step < frame_count(); ++step) {
     const std::int64_t frame = FrameAt<kNear>(step);
-    nodes_.SetPotentials(frame, Other(kNear), kNear == kOut ? -1 : 1, std::move(Far(frame)));
+    nodes_.SetPotentials(frame, Other(kNear), kNear == kOut ? -1 : 1, std::move(At(frame).far));
     nodes_.ForEach(frame, [this](NodeId id) { SetPotentialsOf<kNear>(nodes_[id]); });
   }
   return static_cast<Cost>(near_edge_);
@@ -93,7 +78,7 @@ void Sweep::StartCarriers(Targets targets) {
   constexpr Side kFarSide = Other(kNear);
   const Cost edge_cost = kFarSide == kOut ? network_.exit_cost : network_.entry_cost;
   near_edge_ = targets == Targets::kImbalances ? 0 : kFar;
-  for (std::int64_t step = 0; step < frames(); ++step) {
+  for (std::int64_t step = 0; step < frame_count(); ++step) {
     nodes_.ForEach(FrameAt<kNear>(step), [&](NodeId id) {
       Node& node = nodes_[id];
       node.distance[kNear] = kUnreached;
@@ -106,56 +91,79 @@ void Sweep::StartCarriers(Targets targets) {
 
 template <Side kNear>
 void Sweep::FirstPass() {
-  for (std::int64_t step = 0; step < frames(); ++step) DoFrame<kNear>(step);
+  for (std::int64_t step = 0; step < frame_count(); ++step) DoFrame<kNear>(step, all_);
+}
+
+std::span<const Sweep::Stretch> Sweep::ToDoAfter(const Frame& ahead) {
+  std::fill(todo_.begin(), todo_.end(), Stretch{});
+  const int depth = network_.depth;
+  for (int row = 0; row < network_.rows; ++row) {
+    const Stretch fell = ahead.fell[static_cast<std::size_t>(row)];
+    if (fell.empty()) continue;
+    const Stretch wide = {std::max(fell.begin - depth, 0),
+                          std::min(fell.end + depth, network_.columns)};
+    const int last = std::min(row + depth, network_.rows - 1);
+    for (int to = std::max(row - depth, 0); to <= last; ++to) {
+      todo_[static_cast<std::size_t>(to)].Add(wide);
+    }
+  }
+  return todo_;
 }
 
 template <Side kNear>
-void Sweep::DoFrame(std::int64_t step) {
+void Sweep::DoFrame(std::int64_t step, std::span<const Stretch> todo) {
   constexpr Side kFarSide = Other(kNear);
-  const std::int64_t frame = FrameAt<kNear>(step);
-  const auto columns = static_cast<std::size_t>(network_.columns);
-  const auto rows = static_cast<std::size_t>(network_.rows);
-  const std::size_t begin = Padded(0, 0);
-  const std::size_t end = Padded(network_.columns, network_.rows - 1);
+  const std::int64_t number = FrameAt<kNear>(step);
+  Frame& frame = At(number);
+  const bool first = frame.far.empty();
+  if (first) frame.far.assign(network_.padded_cells(), kFar);
+  std::vector<double>& fresh = first ? frame.far : fresh_;
+  for (int row = 0; row < network_.rows; ++row) {
+    const Stretch stretch = todo[static_cast<std::size_t>(row)];
+    if (!stretch.empty()) DoStretch<kNear>(step, row, stretch, fresh.data());
+  }
+  nodes_.ForEach(number, [&](NodeId id) {
+    Node& node = nodes_[id];
+    const Stretch stretch = todo[static_cast<std::size_t>(node.row)];
+    if (!node.Carries() || node.column < stretch.begin || node.column >= stretch.end) return;
+    double& far = fresh[network_.Padded(node.column, node.row)];
+    // Ahead, or back over the node itself if the flow in it is taken off.
+    const double near = std::min(far, AsDouble(node.distance[kFarSide])) - node.cost;
+    node.distance[kNear] = near == kFar ? kUnreached : static_cast<Cost>(near);
+    far = AsDouble(node.distance[kFarSide]);
+  });
+  if (first) return;
+  for (int row = 0; row < network_.rows; ++row) {
+    const Stretch stretch = todo[static_cast<std::size_t>(row)];
+    for (int column = stretch.begin; column < stretch.end; ++column) {
+      const std::size_t place = network_.Padded(column, row);
+      if (fresh[place] == frame.far[place]) continue;
+      frame.far[place] = fresh[place];
+      frame.fell.resize(all_.size());
+      frame.fell[static_cast<std::size_t>(row)].Add({column, column + 1});
+    }
+  }
+}
+
+/// Distances on the far side as if no node carried flow.
+template <Side kNear>
+void Sweep::DoStretch(std::int64_t step, int row, Stretch stretch, double* out) {
   const double edge =
       near_edge_ + static_cast<double>(kNear == kOut ? network_.exit_cost : network_.entry_cost);
+  const std::int32_t* const costs =
+      nodes_.Costs(FrameAt<kNear>(step)).data() + network_.Cell(0, row);
+  double* const out_row = out + network_.Padded(0, row);
   if (step == 0) {
-    std::fill(near_.begin(), near_.end(), edge);
+    for (int i = stretch.begin; i < stretch.end; ++i) out_row[i] = edge + costs[i];
   } else {
-    const std::vector<double>& ahead = Far(FrameAt<kNear>(step - 1));
-    for (std::size_t row = 0; row < rows; ++row) {
-      std::copy_n(
-          ahead.begin() + static_cast<std::ptrdiff_t>(row * columns), columns,
-          padded_far_.begin() + static_cast<std::ptrdiff_t>(Padded(0, static_cast<int>(row))));
+    const std::vector<double>& ahead = At(FrameAt<kNear>(step - 1)).far;
+    StepRow(ahead.data() + network_.Padded(stretch.begin, row), moves_, costs + stretch.begin,
+            static_cast<std::size_t>(stretch.end - stretch.begin), out_row + stretch.begin);
+    for (const int i : access_[static_cast<std::size_t>(row)]) {
+      if (i >= stretch.begin && i < stretch.end) out_row[i] = std::min(out_row[i], edge + costs[i]);
     }
-    StepOverMoves(padded_far_.data() + begin, moves_, end - begin, near_.data() + begin);
-    for (const std::size_t place : access_) near_[place] = std::min(near_[place], edge);
   }
-  SetCosts(nodes_.Probability(frame));
-  for (std::size_t row = 0; row < rows; ++row) {
-    const double* const near = near_.data() + Padded(0, static_cast<int>(row));
-    const double* const cost = cost_.data() + row * columns;
-    double* const out = fresh_.data() + row * columns;
-    for (std::size_t column = 0; column < columns; ++column)
-      out[column] = near[column] + cost[column];
-  }
-  for (const std::size_t cell : obstacles_) fresh_[cell] = kFar;
-  nodes_.ForEach(frame, [&](NodeId id) {
-    Node& node = nodes_[id];
-    if (!node.Carries()) return;
-    // Back over the node itself, if the flow in it is taken off.
-    const double near = std::min(near_[Padded(node.column, node.row)],
-                                 AsDouble(node.distance[kFarSide]) - node.cost);
-    node.distance[kNear] = near == kFar ? kUnreached : static_cast<Cost>(near);
-    fresh_[network_.Cell(node.column, node.row)] = AsDouble(node.distance[kFarSide]);
-  });
-  std::vector<double>& far = Far(frame);
-  if (far.empty()) {
-    far = fresh_;
-  } else if (far != fresh_) {
-    far.swap(fresh_);
-    Fell(frame) = 1;
-  }
+  for (const int i : obstacles_[static_cast<std::size_t>(row)]) out_row[i] = kFar;
 }
 
 template <Side kNear>
@@ -163,7 +171,7 @@ bool Sweep::FollowPaths(Targets targets) {
   constexpr Side kFarSide = Other(kNear);
   const Cost edge_cost = kNear == kOut ? network_.exit_cost : network_.entry_cost;
   bool any_fell = false;
-  for (std::int64_t step = frames() - 1; step >= 0; --step) {
+  for (std::int64_t step = frame_count() - 1; step >= 0; --step) {
     const std::int64_t frame = FrameAt<kNear>(step);
     nodes_.ForEach(frame, [&](NodeId id) {
       Node& node = nodes_[id];
@@ -176,8 +184,10 @@ bool Sweep::FollowPaths(Targets targets) {
         if (distance < node.distance[kFarSide]) {
           node.distance[kFarSide] = distance;
           node.distance[kNear] = std::min(node.distance[kNear], distance - node.cost);
-          Far(frame)[network_.Cell(node.column, node.row)] = static_cast<double>(distance);
-          Fell(frame) = 1;
+          Frame& at = At(frame);
+          at.far[network_.Padded(node.column, node.row)] = static_cast<double>(distance);
+          at.fell.resize(all_.size());
+          at.fell[static_cast<std::size_t>(node.row)].Add({node.column, node.column + 1});
           any_fell = true;
         }
       }
@@ -191,23 +201,6 @@ bool Sweep::FollowPaths(Targets targets) {
     });
   }
   return any_fell;
-}
-
-void Sweep::SetCosts(std::span<const float> probability) {
-  for (const std::size_t cell : uncommon_) cost_[cell] = common_cost_;
-  uncommon_.clear();
-  for (std::size_t block = 0; block < probability.size(); block += kBlock) {
-    const std::size_t end = std::min(block + kBlock, probability.size());
-    unsigned any = 0;
-    for (std::size_t i = block; i < end; ++i)
-      any |= static_cast<unsigned>(probability[i] != common_);
-    if (any == 0) continue;
-    for (std::size_t i = block; i < end; ++i) {
-      if (probability[i] == common_) continue;
-      cost_[i] = network_.node_cost(probability[i]);
-      uncommon_.push_back(i);
-    }
-  }
 }
 
 template Cost Sweep::SetPotentials<kIn>(Targets targets);

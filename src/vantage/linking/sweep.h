@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -48,51 +49,58 @@ class Sweep {
   void PassOnce() { FirstPass<kOut>(); }
 
  private:
+  /// Columns [begin, end) of a row.
+  struct Stretch {
+    int begin = 0;
+    int end = 0;
+    bool empty() const { return begin >= end; }
+    void Add(Stretch other) {
+      if (other.empty()) return;
+      *this = empty() ? other : Stretch{std::min(begin, other.begin), std::max(end, other.end)};
+    }
+  };
+  struct Frame {
+    /// Distances on the far side, by padded place; infinite outside the grid and at obstacles.
+    std::vector<double> far;
+    /// By row, where they fell since the next frame of a pass was done; empty: nowhere.
+    std::vector<Stretch> fell;
+  };
+
   // Frames in the order of a pass against the direction of kNear.
   template <Side kNear>
   std::int64_t FrameAt(std::int64_t step) const {
     return kNear == kOut ? nodes_.end_frame() - 1 - step : nodes_.first_frame() + step;
   }
-  std::int64_t frames() const { return nodes_.end_frame() - nodes_.first_frame(); }
-  std::vector<double>& Far(std::int64_t frame) {
-    return far_[static_cast<std::size_t>(frame - nodes_.first_frame())];
-  }
-
-  std::uint8_t& Fell(std::int64_t frame) {
-    return fell_[static_cast<std::size_t>(frame - nodes_.first_frame())];
+  std::int64_t frame_count() const { return std::ssize(frames_); }
+  Frame& At(std::int64_t frame) {
+    return frames_[static_cast<std::size_t>(frame - nodes_.first_frame())];
   }
 
   template <Side kNear>
   void StartCarriers(Targets targets);
   template <Side kNear>
   void FirstPass();
+  /// Does the `todo` of a frame again (by row; none empty: all of it).
   template <Side kNear>
-  void DoFrame(std::int64_t step);
+  void DoFrame(std::int64_t step, std::span<const Stretch> todo);
+  template <Side kNear>
+  void DoStretch(std::int64_t step, int row, Stretch stretch, double* out);
+  /// What depends on the distances that fell in the frame before.
+  std::span<const Stretch> ToDoAfter(const Frame& ahead);
   /// Whether any distance fell.
   template <Side kNear>
   bool FollowPaths(Targets targets);
   template <Side kNear>
   void SetPotentialsOf(Node& node);
-  void SetCosts(std::span<const float> probability);
-  std::size_t Padded(int column, int row) const {
-    return static_cast<std::size_t>(column + depth_ + (row + depth_) * stride_);
-  }
 
   const Network& network_;
   NodeStore& nodes_;
-  const int depth_;
-  const int stride_;  // of padded frames: columns, and as many as a move may cross on both sides
   std::vector<KernelMove> moves_;
-  std::vector<std::size_t> access_;        // padded places
-  std::vector<std::size_t> obstacles_;     // cells
-  std::vector<double> padded_far_, near_;  // of one frame, by padded place
-  std::vector<double> cost_;               // of one frame, by cell
-  std::vector<std::size_t> uncommon_;      // cells whose cost_ is not the common one
-  float common_ = 0;
-  double common_cost_ = 0;
-  std::vector<double> fresh_;             // of one frame, by cell
-  std::vector<std::vector<double>> far_;  // by frame, by cell
-  std::vector<std::uint8_t> fell_;        // by frame: far_ changed after it was last used
+  std::vector<std::vector<int>> access_;     // by row: columns
+  std::vector<std::vector<int>> obstacles_;  // by row: columns
+  std::vector<Frame> frames_;
+  std::vector<Stretch> all_, todo_;  // by row
+  std::vector<double> fresh_;        // of one frame, by padded place
   double near_edge_ = 0;
   bool near_edge_fell_ = false;
 };

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-// Compiles the rest of this file once for each instruction set; StepOverMoves takes the best at run
+// Compiles the rest of this file once for each instruction set; StepRow takes the best at run
 // time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vantage/linking/sweep_kernel.cc"
@@ -18,26 +18,28 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void StepOnTarget(const double* HWY_RESTRICT from, std::span<const KernelMove> moves,
-                  std::size_t count, double* HWY_RESTRICT near) {
+void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMove> moves,
+                     const std::int32_t* HWY_RESTRICT cost, std::size_t count,
+                     double* HWY_RESTRICT out) {
   const hn::ScalableTag<double> d;
+  const hn::Rebind<std::int32_t, decltype(d)> d32;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
-    auto least = hn::Add(hn::LoadU(d, from + i + moves[0].offset), hn::Set(d, moves[0].cost));
+    auto least = hn::Add(hn::LoadU(d, ahead + i + moves[0].offset), hn::Set(d, moves[0].cost));
     for (std::size_t m = 1; m < moves.size(); ++m) {
-      const auto value = hn::LoadU(d, from + i + moves[m].offset);
+      const auto value = hn::LoadU(d, ahead + i + moves[m].offset);
       least = hn::Min(least, hn::Add(value, hn::Set(d, moves[m].cost)));
     }
-    hn::StoreU(least, d, near + i);
+    hn::StoreU(hn::Add(least, hn::PromoteTo(d, hn::LoadU(d32, cost + i))), d, out + i);
   }
   for (; i < count; ++i) {
-    double least = from[static_cast<std::ptrdiff_t>(i) + moves[0].offset] + moves[0].cost;
+    double least = ahead[static_cast<std::ptrdiff_t>(i) + moves[0].offset] + moves[0].cost;
     for (const KernelMove& move : moves.subspan(1)) {
-      const double value = from[static_cast<std::ptrdiff_t>(i) + move.offset] + move.cost;
+      const double value = ahead[static_cast<std::ptrdiff_t>(i) + move.offset] + move.cost;
       least = value < least ? value : least;
     }
-    near[i] = least;
+    out[i] = least + cost[i];
   }
 }
 
@@ -48,11 +50,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vantage::linking {
 
-HWY_EXPORT(StepOnTarget);
+HWY_EXPORT(StepRowOnTarget);
 
-void StepOverMoves(const double* from, std::span<const KernelMove> moves, std::size_t count,
-                   double* near) {
-  HWY_DYNAMIC_DISPATCH(StepOnTarget)(from, moves, count, near);
+void StepRow(const double* ahead, std::span<const KernelMove> moves, const std::int32_t* cost,
+             std::size_t count, double* out) {
+  HWY_DYNAMIC_DISPATCH(StepRowOnTarget)(ahead, moves, cost, count, out);
 }
 
 }  // namespace vantage::linking

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 /// Internal to the linking module.
@@ -15,10 +16,10 @@ struct KernelMove {
   double cost = 0;
 };
 
-/// For each of `count` places from `from` on in a padded frame, the least of value + cost over the
-/// moves: near[i] = min over moves m of from[i + m.offset] + m.cost. The arithmetic is exact for
-/// integers below 2^53. Vector code, the best instruction set at run time.
-void StepOverMoves(const double* from, std::span<const KernelMove> moves, std::size_t count,
-                   double* near);
+/// One step of the dynamic program along a row: out[i] = cost[i] + the least over the moves m of
+/// ahead[i + m.offset] + m.cost. Exact, for integers below 2^53. Vector code, the best instruction
+/// set at run time.
+void StepRow(const double* ahead, std::span<const KernelMove> moves, const std::int32_t* cost,
+             std::size_t count, double* out);
 
 }  // namespace vantage::linking
