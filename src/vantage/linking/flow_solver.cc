@@ -10,6 +10,7 @@ namespace vantage::linking {
 namespace {
 
 constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
+constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kExpansionsBetweenStopChecks = 1 << 14;
 
 template <Side kNear>
@@ -19,7 +20,7 @@ constexpr Cost Mirror(Cost potential) {
 
 }  // namespace
 
-FlowSolver::FlowSolver(const Network& network, const Effort& effort)
+FlowSolver::FlowSolver(const Network& network, const SearchEffort& effort)
     : network_(network), effort_(effort), nodes_(network) {}
 
 void FlowSolver::AddFrame(std::span<const float> probability) {
@@ -83,6 +84,7 @@ void FlowSolver::SetFirstPotentials() {
 }
 
 bool FlowSolver::Settle(const RunControl& control) {
+  if (effort_.first_sweep > 0) SweepPotentials<kOut>(effort_.first_sweep * kUnitsPerCost);
   if (!SettleAll<kOut>(control) || !SettleAll<kIn>(control)) return false;
   open_.clear();
   return true;
@@ -111,7 +113,7 @@ bool FlowSolver::SettleAll(const RunControl& control) {
       static_cast<std::int64_t>(effort_.share_between_sweeps * static_cast<double>(nodes));
   expansions_ = between_sweeps;
   for (const Vertex vertex : waiting) {
-    if (expansions_ >= between_sweeps) SweepPotentials<kNear>();
+    if (expansions_ >= between_sweeps) SweepPotentials<kNear>(kEverywhere);
     const QueueEntry start = Entry<kNear>(0, vertex);
     if (Search<kNear>(std::span(&start, 1), kUnlimited, control) == Outcome::kStopped) return false;
   }
@@ -129,7 +131,7 @@ bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
   }
   std::vector<QueueEntry> starts;
   while (std::ssize(ends) > count) {
-    SweepPotentials<kOut>();
+    SweepPotentials<kOut>(kEverywhere);
     starts.clear();
     for (const Vertex end : ends) {
       starts.push_back(
@@ -180,8 +182,8 @@ FlowSolver::Outcome FlowSolver::Search(std::span<const QueueEntry> starts,
 }
 
 template <Side kNear>
-void FlowSolver::SweepPotentials() {
-  const Cost near_edge = Sweep(network_, nodes_).SetPotentials<kNear>(targets_);
+void FlowSolver::SweepPotentials(double most) {
+  const Cost near_edge = Sweep(network_, nodes_).SetPotentials<kNear>(targets_, most);
   edge_potential_[kNear] = -Mirror<kNear>(near_edge);
   edge_potential_[Other(kNear)] = 0;
   expansions_ = 0;
@@ -333,6 +335,13 @@ void FlowSolver::PushFlowAlong(const std::vector<Arc>& arcs, Side near) {
       LinkOf(to) = NodeOf(from);
     }
   }
+}
+
+void FlowSolver::DropFrame() {
+  nodes_.ForEach(nodes_.first_frame(), [this](NodeId id) {
+    if (IsNode(nodes_[id].link[kOut])) nodes_[nodes_[id].link[kOut]].link[kIn] = kFinal;
+  });
+  nodes_.DropFrame();
 }
 
 std::vector<LinkedPath> FlowSolver::Paths() const {

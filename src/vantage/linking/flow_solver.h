@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +16,20 @@
 /// Internal to the linking module.
 
 namespace vantage::linking {
+
+/// How the work is divided: changes the time taken, never the optimum.
+struct SearchEffort {
+  /// Potentials before all searches are distances to the nearest target as far as this, in cost:
+  /// two misses. Farther ones would mislead the searches of step 3. 0: no sweep.
+  double first_sweep = 30;
+  /// A target that takes more expansions of vertices than this to find is far.
+  std::int64_t nearby = 2000;
+  /// Searches for far targets expand so many vertices, as a share of the nodes, between sweeps.
+  double share_between_sweeps = 0.02;
+};
+/// For streams: a sweep speaks for the frames that are here, not for those to come.
+inline constexpr SearchEffort kNoSweeps = {.first_sweep = 0,
+                                           .nearby = std::numeric_limits<std::int64_t>::max()};
 
 /// Minimum-cost flow on a layered graph by successive shortest paths (Ahuja, Magnanti, Orlin,
 /// "Network Flows", 1993, section 9.7), begun from the nodes instead of from the source.
@@ -52,18 +67,11 @@ namespace vantage::linking {
 ///    condition: the flow stays optimal among those that continue what was dropped.
 class FlowSolver {
  public:
-  /// Changes the time taken, never the optimum. In expansions of vertices.
-  struct Effort {
-    /// A target that takes more than this to find is far.
-    std::int64_t nearby = 2000;
-    /// Searches for far targets cost this much, as a share of the nodes, between sweeps.
-    double share_between_sweeps = 0.02;
-  };
-
-  explicit FlowSolver(const Network& network) : FlowSolver(network, Effort{}) {}
-  FlowSolver(const Network& network, const Effort& effort);
+  explicit FlowSolver(const Network& network) : FlowSolver(network, SearchEffort{}) {}
+  FlowSolver(const Network& network, const SearchEffort& effort);
 
   /// Adds the next frame, which CheckFrame has passed; `probability` must outlive the frame here.
+  /// After Settle only with kNoSweeps.
   void AddFrame(std::span<const float> probability);
 
   /// Finds the minimum-cost flow over the frames that are here. False when stopped by the caller.
@@ -76,8 +84,8 @@ class FlowSolver {
   /// no frame may be added afterwards. False when stopped.
   bool KeepAtMost(std::int64_t count, const RunControl& control);
 
-  /// Forgets the oldest frame, whose flow is final. After Settle.
-  void DropFrame() { nodes_.DropFrame(); }
+  /// Forgets the oldest frame, whose flow is final. After Settle; with kNoSweeps.
+  void DropFrame();
 
   const NodeStore& nodes() const { return nodes_; }
 
@@ -124,7 +132,7 @@ class FlowSolver {
   bool SettleAll(const RunControl& control);
   /// Potentials under which the reduced cost to the nearest target is 0, for searches to come.
   template <Side kNear>
-  void SweepPotentials();
+  void SweepPotentials(double most);
   template <Side kNear>
   void Expand(Vertex vertex, Cost distance);
   template <Side kNear>
@@ -146,7 +154,7 @@ class FlowSolver {
   Cost& DistanceOf(Vertex vertex) { return nodes_[NodeOf(vertex)].distance[SideOf(vertex)]; }
 
   const Network& network_;
-  const Effort effort_;
+  const SearchEffort effort_;
   NodeStore nodes_;
   std::vector<NodeId> open_;  // nodes with an imbalance, the oldest first
 

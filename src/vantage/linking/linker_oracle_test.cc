@@ -16,148 +16,20 @@
 #include "vantage/linking/lemon_oracle.h"
 #include "vantage/linking/linker.h"
 #include "vantage/linking/network.h"
+#include "vantage/linking/test_instances.h"
 
 namespace vantage {
 namespace {
 
-/// A problem that owns its numbers.
-struct Instance {
-  int columns = 1;
-  int rows = 1;
-  int frames = 1;
-  std::vector<float> probability;
-  std::vector<std::uint8_t> access, obstacle;
-  LinkingOptions options;
-
-  int cells() const { return columns * rows; }
-  LinkingProblem problem() const {
-    return {.columns = columns,
-            .rows = rows,
-            .frames = frames,
-            .probability = probability,
-            .access = access,
-            .obstacle = obstacle};
-  }
-  StreamGrid grid() const {
-    return {.columns = columns, .rows = rows, .access = access, .obstacle = obstacle};
-  }
-  std::span<const float> Map(int frame) const {
-    return std::span(probability)
-        .subspan(static_cast<std::size_t>(frame * cells()), static_cast<std::size_t>(cells()));
-  }
-};
-
-struct Limits {
-  int side = 8;
-  int frames = 12;
-  int depth = 3;
-};
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  int Int(int low, int high) {
-    return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
-  }
-  double Unit() { return static_cast<double>(engine_()) / 4294967296.0; }
-  bool Chance(double p) { return Unit() < p; }
-
- private:
-  std::mt19937 engine_;
-};
-
-float RandomProbability(Random& random, int style) {
-  switch (style) {
-    case 0:  // noise of every strength
-      return static_cast<float>(random.Unit());
-    case 1:  // as maps are: almost nothing, some sure, with costs at the clip
-      return random.Chance(0.2) ? 1.0F : random.Chance(0.1) ? 0.7F : 0.0F;
-    case 2:  // many ties
-      return static_cast<float>(random.Int(1, 3)) / 4;
-    default:  // rare and weak people
-      return random.Chance(0.1) ? static_cast<float>(0.5 + random.Unit() / 2) : 0.01F;
-  }
-}
-
-Instance RandomInstance(unsigned seed, const Limits& limits) {
-  Random random(seed);
-  Instance instance;
-  instance.columns = random.Int(1, limits.side);
-  instance.rows = random.Int(1, limits.side);
-  instance.frames = random.Int(1, limits.frames);
-  const int style = random.Int(0, 3);
-  for (int i = 0; i < instance.cells() * instance.frames; ++i) {
-    instance.probability.push_back(RandomProbability(random, style));
-  }
-  const double access = random.Chance(0.3) ? 0 : random.Unit();
-  for (int i = 0; i < instance.cells(); ++i) instance.access.push_back(random.Chance(access));
-  if (random.Chance(0.5)) {
-    for (int i = 0; i < instance.cells(); ++i) instance.obstacle.push_back(random.Chance(0.2));
-  }
-  instance.options.depth = random.Int(0, limits.depth);
-  const double birth[] = {0, 1, 5, 45, 20 * random.Unit()};
-  instance.options.birth_cost = birth[random.Int(0, 4)];
-  instance.options.clip = random.Chance(0.5) ? 1e-6 : 0.05;
-  instance.options.movement_cost = random.Chance(0.5) ? 0 : 2 * random.Unit();
-  instance.options.max_paths = random.Chance(0.7) ? 0 : random.Int(1, 3);
-  return instance;
-}
-
-std::int64_t Units(double cost) { return std::llround(cost * 1048576.0); }
-
-std::int64_t NodeUnits(const Instance& instance, int frame, int cell) {
-  const double p = instance.probability[static_cast<std::size_t>(frame * instance.cells() + cell)];
-  const double largest = std::log((1 - instance.options.clip) / instance.options.clip);
-  return Units(std::clamp(-std::log(p / (1 - p)), -largest, largest));
-}
-
-bool Blocked(const Instance& instance, int cell) {
-  return !instance.obstacle.empty() && instance.obstacle[static_cast<std::size_t>(cell)] != 0;
-}
-
-bool MayMove(const Instance& instance, int from, int to) {
-  const int columns = std::abs(from % instance.columns - to % instance.columns);
-  const int rows = std::abs(from / instance.columns - to / instance.columns);
-  return std::max(columns, rows) <= instance.options.depth;
-}
-
-std::int64_t MoveUnits(const Instance& instance, int from, int to) {
-  return Units(instance.options.movement_cost *
-               std::hypot(from % instance.columns - to % instance.columns,
-                          from / instance.columns - to / instance.columns));
-}
-
-/// Checks that the paths are legal and returns what they cost.
-std::int64_t CheckPaths(const Instance& instance, const std::vector<LinkedPath>& paths) {
-  std::int64_t cost = 0;
-  std::set<std::pair<std::int64_t, CellIndex>> taken;
-  std::pair<std::int64_t, CellIndex> previous(-1, -1);
-  for (const LinkedPath& path : paths) {
-    cost += Units(instance.options.birth_cost);
-    EXPECT_FALSE(path.cells.empty());
-    const std::pair begin(path.first_frame, path.cells.front());
-    EXPECT_LT(previous, begin) << "not in order";
-    previous = begin;
-    const auto access = [&](CellIndex cell) {
-      return instance.access[static_cast<std::size_t>(cell)] != 0;
-    };
-    EXPECT_TRUE(path.first_frame == 0 || access(path.cells.front()));
-    const std::int64_t end = path.first_frame + std::ssize(path.cells);
-    EXPECT_LE(end, instance.frames);
-    EXPECT_TRUE(end == instance.frames || access(path.cells.back()));
-    for (std::size_t i = 0; i < path.cells.size(); ++i) {
-      const CellIndex cell = path.cells[i];
-      const std::int64_t frame = path.first_frame + static_cast<std::int64_t>(i);
-      EXPECT_TRUE(taken.emplace(frame, cell).second) << "two paths on one node";
-      EXPECT_FALSE(Blocked(instance, cell));
-      cost += NodeUnits(instance, static_cast<int>(frame), cell);
-      if (i == 0) continue;
-      EXPECT_TRUE(MayMove(instance, path.cells[i - 1], cell));
-      cost += MoveUnits(instance, path.cells[i - 1], cell);
-    }
-  }
-  return cost;
-}
+using testing::Access;
+using testing::Blocked;
+using testing::CheckPaths;
+using testing::Instance;
+using testing::MayMove;
+using testing::MoveUnits;
+using testing::NodeUnits;
+using testing::RandomInstance;
+using testing::Units;
 
 /// The optimum by trying every set of disjoint paths.
 std::int64_t BruteForce(const Instance& instance) {
@@ -166,14 +38,11 @@ std::int64_t BruteForce(const Instance& instance) {
     std::int64_t cost;
   };
   std::vector<Path> all;
-  const auto access = [&](int cell) {
-    return instance.access[static_cast<std::size_t>(cell)] != 0;
-  };
   const std::function<void(int, int, Path)> extend = [&](int frame, int cell, Path path) {
     if (Blocked(instance, cell)) return;
     path.nodes |= std::uint64_t{1} << (frame * instance.cells() + cell);
     path.cost += NodeUnits(instance, frame, cell);
-    if (frame == instance.frames - 1 || access(cell)) all.push_back(path);
+    if (frame == instance.frames - 1 || Access(instance, cell)) all.push_back(path);
     if (frame == instance.frames - 1) return;
     for (int to = 0; to < instance.cells(); ++to) {
       if (!MayMove(instance, cell, to)) continue;
@@ -182,7 +51,8 @@ std::int64_t BruteForce(const Instance& instance) {
   };
   for (int frame = 0; frame < instance.frames; ++frame) {
     for (int cell = 0; cell < instance.cells(); ++cell) {
-      if (frame == 0 || access(cell)) extend(frame, cell, {0, Units(instance.options.birth_cost)});
+      if (frame == 0 || Access(instance, cell))
+        extend(frame, cell, {0, Units(instance.options.birth_cost)});
     }
   }
   const int most =
@@ -204,7 +74,7 @@ TEST(LinkerOracle, EqualsNetworkSimplexOnRandomProblems) {
   int capped = 0;
   for (unsigned seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
-    const Instance instance = RandomInstance(seed, Limits{});
+    const Instance instance = RandomInstance(seed);
     const Result<LinkingResult> result = LinkPaths(instance.problem(), instance.options);
     ASSERT_TRUE(result) << result.error().message;
     const testing::LemonAnswer right =
@@ -231,17 +101,18 @@ TEST(LinkerOracle, EqualsNetworkSimplexOnRandomProblems) {
 TEST(LinkerOracle, AnyEffortFindsTheOptimum) {
   for (unsigned seed = 1000; seed < 1300; ++seed) {
     SCOPED_TRACE(seed);
-    Instance instance = RandomInstance(seed, Limits{});
+    Instance instance = RandomInstance(seed);
     instance.options.max_paths = 0;
     const Result<LinkingResult> right = LinkPaths(instance.problem(), instance.options);
     ASSERT_TRUE(right) << right.error().message;
     const Result<linking::Network> network =
         linking::MakeNetwork(instance.grid(), instance.options);
     ASSERT_TRUE(network);
-    for (const linking::FlowSolver::Effort effort :
-         {linking::FlowSolver::Effort{.nearby = 1, .share_between_sweeps = 0},
-          {.nearby = 0, .share_between_sweeps = 0.1},
-          {.nearby = 5, .share_between_sweeps = 0.01}}) {
+    for (const linking::SearchEffort& effort :
+         {linking::SearchEffort{.first_sweep = 0, .nearby = 1, .share_between_sweeps = 0},
+          {.first_sweep = 0, .nearby = 5, .share_between_sweeps = 0.01},
+          {.first_sweep = 1, .nearby = 0, .share_between_sweeps = 0.1},
+          {.first_sweep = 1000, .nearby = 5, .share_between_sweeps = 0}}) {
       linking::FlowSolver solver(*network, effort);
       for (int frame = 0; frame < instance.frames; ++frame) solver.AddFrame(instance.Map(frame));
       ASSERT_TRUE(solver.Settle({}));
@@ -255,12 +126,12 @@ TEST(LinkerOracle, AnyEffortFindsTheOptimum) {
 TEST(LinkerOracle, FramesMayBeAddedToASettledFlow) {
   for (unsigned seed = 2000; seed < 2500; ++seed) {
     SCOPED_TRACE(seed);
-    Instance instance = RandomInstance(seed, Limits{});
+    Instance instance = RandomInstance(seed);
     instance.options.max_paths = 0;
     const Result<linking::Network> network =
         linking::MakeNetwork(instance.grid(), instance.options);
     ASSERT_TRUE(network);
-    linking::FlowSolver solver(*network);
+    linking::FlowSolver solver(*network, linking::kNoSweeps);
     Instance so_far = instance;
     for (so_far.frames = 1; so_far.frames <= instance.frames; ++so_far.frames) {
       solver.AddFrame(instance.Map(so_far.frames - 1));

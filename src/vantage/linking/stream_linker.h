@@ -51,13 +51,13 @@ struct StreamReport {
 };
 
 /// Links a stream with a fixed lag in bounded memory: the positions of a frame are final once
-/// `lag_frames` further frames are known. At every moment the paths through the frames that are not
-/// final are the exact optimum (as LinkPaths has it, a path being free to end in the last frame)
-/// among all that continue the final ones; with a lag of the whole recording the answer is that of
-/// LinkPaths. A frame costs time in proportion to what changes in the last frames.
+/// `lag_frames` >= 1 further frames are known. At every moment the paths through the frames that
+/// are not final are the exact optimum (as LinkPaths has it, a path being free to end in the last
+/// frame) among all that continue the final ones; with a lag of the whole recording the answer is
+/// that of LinkPaths. A frame costs time in proportion to what changes in the last frames.
 class StreamLinker {
  public:
-  /// Fails on options out of range, sizes that do not fit, lag_frames < 0, and options.max_paths >
+  /// Fails on options out of range, sizes that do not fit, lag_frames < 1, and options.max_paths >
   /// 0 (a cap counts the paths of a whole recording).
   static Result<StreamLinker> Create(const StreamGrid& grid, const LinkingOptions& options,
                                      std::int64_t lag_frames);

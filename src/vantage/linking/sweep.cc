@@ -40,7 +40,8 @@ Sweep::Sweep(const Network& network, NodeStore& nodes)
 }
 
 template <Side kNear>
-Cost Sweep::SetPotentials(Targets targets) {
+Cost Sweep::SetPotentials(Targets targets, double most) {
+  most_ = most;
   StartCarriers<kNear>(targets);
   FirstPass<kNear>();
   while (FollowPaths<kNear>(targets)) {
@@ -128,7 +129,8 @@ void Sweep::DoFrame(std::int64_t step, std::span<const Stretch> todo) {
     if (!node.Carries() || node.column < stretch.begin || node.column >= stretch.end) return;
     double& far = fresh[network_.Padded(node.column, node.row)];
     // Ahead, or back over the node itself if the flow in it is taken off.
-    const double near = std::min(far, AsDouble(node.distance[kFarSide])) - node.cost;
+    const double near =
+        std::min(std::min(far, AsDouble(node.distance[kFarSide])) - node.cost, most_);
     node.distance[kNear] = near == kFar ? kUnreached : static_cast<Cost>(near);
     far = AsDouble(node.distance[kFarSide]);
   });
@@ -154,11 +156,11 @@ void Sweep::DoStretch(std::int64_t step, int row, Stretch stretch, double* out) 
       nodes_.Costs(FrameAt<kNear>(step)).data() + network_.Cell(0, row);
   double* const out_row = out + network_.Padded(0, row);
   if (step == 0) {
-    for (int i = stretch.begin; i < stretch.end; ++i) out_row[i] = edge + costs[i];
+    for (int i = stretch.begin; i < stretch.end; ++i) out_row[i] = std::min(edge + costs[i], most_);
   } else {
     const std::vector<double>& ahead = At(FrameAt<kNear>(step - 1)).far;
     StepRow(ahead.data() + network_.Padded(stretch.begin, row), moves_, costs + stretch.begin,
-            static_cast<std::size_t>(stretch.end - stretch.begin), out_row + stretch.begin);
+            static_cast<std::size_t>(stretch.end - stretch.begin), most_, out_row + stretch.begin);
     for (const int i : access_[static_cast<std::size_t>(row)]) {
       if (i >= stretch.begin && i < stretch.end) out_row[i] = std::min(out_row[i], edge + costs[i]);
     }
@@ -203,7 +205,7 @@ bool Sweep::FollowPaths(Targets targets) {
   return any_fell;
 }
 
-template Cost Sweep::SetPotentials<kIn>(Targets targets);
-template Cost Sweep::SetPotentials<kOut>(Targets targets);
+template Cost Sweep::SetPotentials<kIn>(Targets targets, double most);
+template Cost Sweep::SetPotentials<kOut>(Targets targets, double most);
 
 }  // namespace vantage::linking

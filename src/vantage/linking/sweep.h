@@ -43,7 +43,7 @@ class Sweep {
   /// from the targets, time reversed. No frame was dropped. Returns the distance of the edge on the
   /// side of kNear.
   template <Side kNear>
-  Cost SetPotentials(Targets targets);
+  Cost SetPotentials(Targets targets, double most);
 
   /// One pass over every arc: what the first round does, for measuring.
   void PassOnce() { FirstPass<kOut>(); }
@@ -101,6 +101,7 @@ class Sweep {
   std::vector<Frame> frames_;
   std::vector<Stretch> all_, todo_;  // by row
   std::vector<double> fresh_;        // of one frame, by padded place
+  double most_ = 0;
   double near_edge_ = 0;
   bool near_edge_fell_ = false;
 };

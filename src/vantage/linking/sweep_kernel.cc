@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/linking/sweep_kernel.h"
 
+#include <algorithm>
 #include <cstddef>
 
 // Compiles the rest of this file once for each instruction set; StepRow takes the best at run
@@ -19,7 +20,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMove> moves,
-                     const std::int32_t* HWY_RESTRICT cost, std::size_t count,
+                     const std::int32_t* HWY_RESTRICT cost, std::size_t count, double most,
                      double* HWY_RESTRICT out) {
   const hn::ScalableTag<double> d;
   const hn::Rebind<std::int32_t, decltype(d)> d32;
@@ -31,7 +32,8 @@ void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMov
       const auto value = hn::LoadU(d, ahead + i + moves[m].offset);
       least = hn::Min(least, hn::Add(value, hn::Set(d, moves[m].cost)));
     }
-    hn::StoreU(hn::Add(least, hn::PromoteTo(d, hn::LoadU(d32, cost + i))), d, out + i);
+    const auto value = hn::Add(least, hn::PromoteTo(d, hn::LoadU(d32, cost + i)));
+    hn::StoreU(hn::Min(value, hn::Set(d, most)), d, out + i);
   }
   for (; i < count; ++i) {
     double least = ahead[static_cast<std::ptrdiff_t>(i) + moves[0].offset] + moves[0].cost;
@@ -39,7 +41,7 @@ void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMov
       const double value = ahead[static_cast<std::ptrdiff_t>(i) + move.offset] + move.cost;
       least = value < least ? value : least;
     }
-    out[i] = least + cost[i];
+    out[i] = std::min(least + cost[i], most);
   }
 }
 
@@ -53,8 +55,8 @@ namespace vantage::linking {
 HWY_EXPORT(StepRowOnTarget);
 
 void StepRow(const double* ahead, std::span<const KernelMove> moves, const std::int32_t* cost,
-             std::size_t count, double* out) {
-  HWY_DYNAMIC_DISPATCH(StepRowOnTarget)(ahead, moves, cost, count, out);
+             std::size_t count, double most, double* out) {
+  HWY_DYNAMIC_DISPATCH(StepRowOnTarget)(ahead, moves, cost, count, most, out);
 }
 
 }  // namespace vantage::linking
