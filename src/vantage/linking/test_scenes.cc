@@ -144,15 +144,18 @@ void Scene::Mark(const Vector& position) {
     float& q = frame_.map[CellAt({column, row})];
     q = static_cast<float>(1 - (1 - static_cast<double>(q)) * (1 - surety * share));
   };
-  add(position.x, position.y, 1 - options_.blur);
-  if (options_.blur == 0) return;
-  // A cell's overlap with the unit square around the position.
+  // Overlaps of a cell's size around the position with the up to four cells there.
   const double left = std::floor(position.x - 0.5), low = std::floor(position.y - 0.5);
   const double right_share = position.x - 0.5 - left, high_share = position.y - 0.5 - low;
-  add(left, low, options_.blur * (1 - right_share) * (1 - high_share));
-  add(left + 1, low, options_.blur * right_share * (1 - high_share));
-  add(left, low + 1, options_.blur * (1 - right_share) * high_share);
-  add(left + 1, low + 1, options_.blur * right_share * high_share);
+  const double most = std::max(right_share, 1 - right_share) * std::max(high_share, 1 - high_share);
+  for (const double column : {left, left + 1}) {
+    for (const double row : {low, low + 1}) {
+      const double overlap = (column > left ? right_share : 1 - right_share) *
+                             (row > low ? high_share : 1 - high_share);
+      const bool under = column == std::floor(position.x) && row == std::floor(position.y);
+      add(column, row, under ? 1 : options_.blur * overlap / most);
+    }
+  }
 }
 
 void Scene::Draw() {
@@ -247,9 +250,9 @@ SceneOptions CrowdCase() {
   options.frames = 100;
   options.min_people = 40;
   options.max_people = 40;
-  options.mean_stay_frames = 60;
-  options.top_speed = 3;
-  options.acceleration = 0.5;
+  options.mean_stay_frames = 150;
+  options.top_speed = 1.5;
+  options.acceleration = 0.3;
   options.misses = 0.1;
   options.mean_miss_frames = 2;
   options.false_alarms = 2;

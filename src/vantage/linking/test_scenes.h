@@ -43,8 +43,9 @@ struct SceneOptions {
   double false_alarms = 0;
   /// A mark is up to this far from the person along each axis, anew in every frame.
   double position_error = 0;
-  /// Share of a mark that is spread over the (up to four) cells around its position in proportion
-  /// to their overlap; the rest is on the cell under it. Real maps do that to people between cells.
+  /// A mark is strongest in the cell under it. The up to three other cells that a cell's size
+  /// around its position overlaps hold up to this share of that, in proportion to the overlap: real
+  /// maps do so where people stand between cells.
   double blur = 0;
   /// Probability of cells without a mark.
   float background = 0.002F;
