@@ -1,118 +1,142 @@
 // SPDX-FileCopyrightText: The Vantage authors
 // SPDX-License-Identifier: MIT
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <random>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/child_process.h"
 #include "bench/report.h"
 #include "vantage/linking/lemon_oracle.h"
 #include "vantage/linking/linker.h"
+#include "vantage/linking/test_scenes.h"
 
 namespace vantage::bench {
 namespace {
 
-/// A room of 28 x 28 cells with a door in the middle of each wall. Four people cross it again and
-/// again; one sighting in ten is missed and every other frame has a false one.
-struct Room {
-  static constexpr int kSide = 28;
-  static constexpr int kFrames = 300;
-  static constexpr int kPeople = 4;
-  static constexpr double kMisses = 0.1;
+using testing::LemonAlgorithm;
+using testing::LemonAnswer;
+using testing::RecordedScene;
+using testing::SceneOptions;
 
-  std::vector<float> probability = std::vector<float>(std::size_t{kSide} * kSide * kFrames, 0.002F);
-  std::vector<std::uint8_t> access = std::vector<std::uint8_t>(std::size_t{kSide} * kSide, 0);
+/// A problem that every solver is given, one thread each.
+struct Case {
+  Case(const SceneOptions& scene_options, int depth) : scene(scene_options) {
+    options.depth = depth;
+  }
+  RecordedScene scene;
   LinkingOptions options;
-
-  Room() {
-    const std::array<Place, 4> doors = {
-        {{0, kSide / 2}, {kSide - 1, kSide / 2}, {kSide / 2, 0}, {kSide / 2, kSide - 1}}};
-    for (const Place& door : doors) access[Cell(door)] = 1;
-    for (int person = 0; person < kPeople; ++person) {
-      int frame = 10 * person;
-      while (frame < kFrames) {
-        const Place& from = doors[Below(4)];
-        const Place& to = doors[Below(4)];
-        frame = Walk(from, to, frame) + 20;
-      }
-    }
-    for (int frame = 0; frame < kFrames; frame += 2) See(frame, AnyPlace());
-  }
-
-  LinkingProblem problem() const {
-    return {.columns = kSide,
-            .rows = kSide,
-            .frames = kFrames,
-            .probability = probability,
-            .access = access,
-            .obstacle = {}};
-  }
-
- private:
-  struct Place {
-    int x, y;
-    friend bool operator==(const Place&, const Place&) = default;
-  };
-
-  static std::size_t Cell(const Place& place) {
-    return static_cast<std::size_t>(place.x) + static_cast<std::size_t>(place.y) * kSide;
-  }
-  std::size_t Below(std::size_t count) { return engine_() % count; }
-  Place AnyPlace() { return {static_cast<int>(Below(kSide)), static_cast<int>(Below(kSide))}; }
-  void See(int frame, const Place& place) {
-    const double surety = 1 - std::pow(10, -0.5 - 0.003 * static_cast<double>(Below(1000)));
-    probability[static_cast<std::size_t>(frame) * kSide * kSide + Cell(place)] =
-        static_cast<float>(surety);
-  }
-
-  /// Through a random place in between, one cell a frame; returns the frame after the last.
-  int Walk(Place place, const Place& last, int frame) {
-    for (const Place& goal : {AnyPlace(), last}) {
-      for (; place != goal && frame < kFrames; ++frame) {
-        if (Below(1000) >= 1000 * kMisses) See(frame, place);
-        place.x += std::clamp(goal.x - place.x, -1, 1);
-        place.y += std::clamp(goal.y - place.y, -1, 1);
-      }
-    }
-    return frame;
-  }
-
-  std::mt19937 engine_{1};
+  /// The first solver's answer in units of 2^-20; the others must have the same.
+  std::optional<std::int64_t> optimum_units;
 };
 
-void BM_LinkOurs(benchmark::State& state) {
-  const Room room;
-  for (auto _ : state) {
-    const Result<LinkingResult> result = LinkPaths(room.problem(), room.options);
-    if (!result) return state.SkipWithError(result.error().message.c_str());
-    state.counters["paths"] = static_cast<double>(result->report.paths);
-    state.counters["cost"] = result->report.cost;
-  }
+Case& Room() {
+  static Case problem(testing::RoomCase(), 1);
+  return problem;
 }
-BENCHMARK(BM_LinkOurs)->UseRealTime()->Unit(benchmark::kMillisecond);
-
-/// The graph is built by each solver, its time included.
-void BM_LinkNetworkSimplex(benchmark::State& state) {
-  const Room room;
-  for (auto _ : state) {
-    const testing::LemonAnswer answer = testing::SolveWithLemon(room.problem(), room.options);
-    state.counters["paths"] = static_cast<double>(answer.paths);
-    state.counters["cost"] = static_cast<double>(answer.cost_units) / 1048576.0;
-  }
+Case& Arena() {
+  static Case problem(testing::ArenaCase(), 1);
+  return problem;
 }
-BENCHMARK(BM_LinkNetworkSimplex)->UseRealTime()->Unit(benchmark::kMillisecond)->Iterations(1);
+Case& Crowd() {
+  static Case problem(testing::CrowdCase(), 3);
+  return problem;
+}
 
-const bool compared = Compare({.name = "linking.room300.1t.vs_lemon",
-                               .ours = "BM_LinkOurs",
-                               .peer = "BM_LinkNetworkSimplex",
-                               .peer_name = "LEMON NetworkSimplex",
-                               .unit = "ms",
-                               .threads = 1});
+struct Answer {
+  std::int64_t cost_units = 0;
+  std::int64_t paths = 0;
+};
+
+Answer Ours(const Case& problem) {
+  const Result<LinkingResult> result = LinkPaths(problem.scene.problem(), problem.options);
+  if (!result) throw std::runtime_error(result.error().message);
+  return {std::llround(result->report.cost * 1048576.0), result->report.paths};
+}
+
+template <LemonAlgorithm kAlgorithm>
+Answer Lemon(const Case& problem) {
+  const LemonAnswer answer =
+      testing::SolveWithLemon(problem.scene.problem(), problem.options, kAlgorithm);
+  return {answer.cost_units, answer.paths};
+}
+
+/// From the maps to the answer: the graph is built by each solver, its time and memory included;
+/// the maps themselves are not. Every solution is a process of its own, whose peak memory is known
+/// and which begins with none that somebody else has freed.
+void BM_Link(benchmark::State& state, Answer (*solve)(const Case&), Case& (*get)()) {
+  Case& problem = get();
+  double largest_bytes = 0;
+  for (auto _ : state) {
+    const Result<ChildRun<Answer>> run = RunInChild<Answer>([&] { return solve(problem); });
+    if (!run) return state.SkipWithError(run.error().message.c_str());
+    if (!problem.optimum_units) problem.optimum_units = run->value.cost_units;
+    if (run->value.cost_units != *problem.optimum_units) {
+      return state.SkipWithError(fmt::format("its cost is {} units, another solver's {}",
+                                             run->value.cost_units, *problem.optimum_units)
+                                     .c_str());
+    }
+    state.SetIterationTime(run->secs);
+    largest_bytes = std::max(largest_bytes, static_cast<double>(run->peak_bytes));
+    state.counters["paths"] = static_cast<double>(run->value.paths);
+    state.counters["cost"] = static_cast<double>(run->value.cost_units) / 1048576.0;
+  }
+  state.counters["MB"] = 1e-6 * largest_bytes;
+}
+
+void Once(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+void Often(benchmark::internal::Benchmark* benchmark) {
+  benchmark->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+constexpr auto* kCapacityScaling = Lemon<LemonAlgorithm::kCapacityScaling>;
+constexpr auto* kCostScaling = Lemon<LemonAlgorithm::kCostScaling>;
+constexpr auto* kNetworkSimplex = Lemon<LemonAlgorithm::kNetworkSimplex>;
+
+BENCHMARK_CAPTURE(BM_Link, room.ours, Ours, Room)->Apply(Often);
+BENCHMARK_CAPTURE(BM_Link, room.CapacityScaling, kCapacityScaling, Room)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, room.CostScaling, kCostScaling, Room)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, room.NetworkSimplex, kNetworkSimplex, Room)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, arena.ours, Ours, Arena)->Apply(Often);
+BENCHMARK_CAPTURE(BM_Link, arena.CapacityScaling, kCapacityScaling, Arena)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, arena.CostScaling, kCostScaling, Arena)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, arena.NetworkSimplex, kNetworkSimplex, Arena)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, crowd.ours, Ours, Crowd)->Apply(Often);
+BENCHMARK_CAPTURE(BM_Link, crowd.CapacityScaling, kCapacityScaling, Crowd)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, crowd.CostScaling, kCostScaling, Crowd)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, crowd.NetworkSimplex, kNetworkSimplex, Crowd)->Apply(Once);
+
+/// With the fastest of LEMON's algorithms on the case, in time and in its memory.
+bool CompareCase(const std::string& name) {
+  std::vector<Peer> peers;
+  for (const std::string algorithm : {"CapacityScaling", "CostScaling", "NetworkSimplex"}) {
+    peers.push_back({fmt::format("BM_Link/{}.{}", name, algorithm), "LEMON " + algorithm});
+  }
+  const std::string ours = fmt::format("BM_Link/{}.ours", name);
+  return Compare({.name = fmt::format("linking.{}.1t.vs_lemon", name),
+                  .ours = ours,
+                  .peers = peers,
+                  .unit = "ms",
+                  .threads = 1}) &&
+         Compare({.name = fmt::format("linking.{}.memory.vs_lemon", name),
+                  .ours = ours,
+                  .peers = peers,
+                  .best_in = "ms",
+                  .unit = "MB",
+                  .threads = 1,
+                  .lower_is_better = true});
+}
+
+const bool kCompared = CompareCase("room") && CompareCase("arena") && CompareCase("crowd");
 
 }  // namespace
 }  // namespace vantage::bench

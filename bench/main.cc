@@ -90,19 +90,43 @@ class Recorder final : public benchmark::ConsoleReporter {
   std::map<std::string, std::string> errors_;
 };
 
+bool LowerIsBetter(const Comparison& comparison) {
+  return comparison.lower_is_better || Nanoseconds(comparison.unit);
+}
+
+/// The one with whom ours are compared.
+Result<Peer> FindPeer(const Comparison& comparison, const Recorder& recorder) {
+  if (comparison.peers.empty()) return Peer{comparison.peer, comparison.peer_name};
+  const bool own_unit = comparison.best_in.empty();
+  const bool least = !own_unit || LowerIsBetter(comparison);
+  Peer best;
+  double best_value = 0;
+  for (const Peer& peer : comparison.peers) {
+    VANTAGE_ASSIGN_OR_RETURN(
+        const double value,
+        recorder.Value(peer.benchmark, own_unit ? comparison.unit : comparison.best_in));
+    if (best.name.empty() || (least ? value < best_value : value > best_value)) {
+      best = peer;
+      best_value = value;
+    }
+  }
+  return best;
+}
+
 Result<nlohmann::ordered_json> Evaluate(const Comparison& comparison, const Recorder& recorder) {
   VANTAGE_ASSIGN_OR_RETURN(const double ours, recorder.Value(comparison.ours, comparison.unit));
+  VANTAGE_ASSIGN_OR_RETURN(const Peer chosen, FindPeer(comparison, recorder));
   VANTAGE_ASSIGN_OR_RETURN(
       const double peer,
-      comparison.limit ? *comparison.limit : recorder.Value(comparison.peer, comparison.unit));
+      comparison.limit ? *comparison.limit : recorder.Value(chosen.benchmark, comparison.unit));
   if (!(ours > 0 && peer > 0))
     return Fail("{} and {} must be above 0 {}", ours, peer, comparison.unit);
-  const bool lower_is_better = comparison.lower_is_better || Nanoseconds(comparison.unit);
+  const bool lower_is_better = LowerIsBetter(comparison);
   return nlohmann::ordered_json{{"name", comparison.name},
                                 {"unit", comparison.unit},
                                 {"ours", ours},
                                 {"peer", peer},
-                                {"peer_name", comparison.peer_name},
+                                {"peer_name", chosen.name},
                                 {"ratio", lower_is_better ? peer / ours : ours / peer},
                                 {"threads", comparison.threads}};
 }
@@ -142,7 +166,7 @@ int Run(int argc, char** argv) {
     }
     fmt::print("{:<40} {:>12.4g} {:>12.4g} {:<10} {:>7.2f}  {}\n", comparison.name,
                (*row)["ours"].get<double>(), (*row)["peer"].get<double>(), comparison.unit,
-               (*row)["ratio"].get<double>(), comparison.peer_name);
+               (*row)["ratio"].get<double>(), (*row)["peer_name"].get<std::string>());
     list.push_back(*row);
   }
   if (!json_path.empty()) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 /// How a benchmark file says what its figures are compared with. Ours and the peer are both cases
 /// of Google Benchmark, measured in the same run:
@@ -27,6 +28,11 @@
 
 namespace vantage::bench {
 
+struct Peer {
+  std::string benchmark;  ///< case, as in Comparison
+  std::string name;
+};
+
 struct Comparison {
   /// Name in bench.json: module.input.threads.vs_peer.
   std::string name;
@@ -34,7 +40,11 @@ struct Comparison {
   /// as "/real_time" are left away.
   std::string ours;
   std::string peer = {};
-  std::string peer_name;
+  std::string peer_name = {};
+  /// Instead of a peer: several, all of which must have run; the best in `best_in` counts.
+  std::vector<Peer> peers = {};
+  /// A unit of time or a counter of which less is better; empty: `unit`.
+  std::string best_in = {};
   /// Instead of a peer: what ours must keep within.
   std::optional<double> limit = std::nullopt;
   /// "ns", "us", "ms" or "s": real time of one iteration. Anything else: the counter of this name.
