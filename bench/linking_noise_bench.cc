@@ -23,11 +23,11 @@ namespace vantage::bench {
 namespace {
 
 struct NoisyRecording {
-  explicit NoisyRecording(std::uint32_t seed) {
+  NoisyRecording(std::uint32_t seed, double mean_miss_frames) {
     testing::SceneOptions options = testing::ArenaCase();
     options.seed = seed;
     options.misses = 0.2;
-    options.mean_miss_frames = 2;
+    options.mean_miss_frames = mean_miss_frames;
     options.false_alarms = 1;
     options.position_error = 1;
     const testing::RecordedScene scene(options);
@@ -44,14 +44,23 @@ struct NoisyRecording {
   Tracks truth;
 };
 
-const NoisyRecording& TuningRecording() {
-  static const NoisyRecording recording(11);
-  return recording;
+struct NoiseCase {
+  explicit NoiseCase(double mean_miss_frames)
+      : tuning(11, mean_miss_frames),
+        recordings{{12, mean_miss_frames}, {13, mean_miss_frames}, {14, mean_miss_frames}} {}
+  NoisyRecording tuning;
+  std::vector<NoisyRecording> recordings;
+};
+
+/// Misses are independent of each other.
+const NoiseCase& Independent() {
+  static const NoiseCase noise(1);
+  return noise;
 }
-const std::vector<NoisyRecording>& Recordings() {
-  static const std::vector<NoisyRecording> recordings = {NoisyRecording(12), NoisyRecording(13),
-                                                         NoisyRecording(14)};
-  return recordings;
+/// Misses come in runs: as many, but two frames long on average.
+const NoiseCase& Runs() {
+  static const NoiseCase noise(2);
+  return noise;
 }
 
 struct Candidate {
@@ -61,8 +70,8 @@ struct Candidate {
 
 std::vector<Candidate> ExactCandidates() {
   std::vector<Candidate> candidates;
-  for (const int depth : {1, 2, 3}) {
-    for (const double movement_cost : {0.5, 1.0, 2.0}) {
+  for (const int depth : {1, 2}) {
+    for (const double movement_cost : {0.25, 0.5, 1.0, 2.0}) {
       candidates.push_back({fmt::format("depth {}, movement cost {}", depth, movement_cost),
                             [=](const NoisyRecording& recording) {
                               LinkingOptions options;
@@ -80,7 +89,7 @@ std::vector<Candidate> SimpleCandidates(Tracks (*link)(const Detections&, const 
   std::vector<Candidate> candidates;
   for (const double gate_m : {0.75, 1.0, 1.25, 1.5, 2.0}) {
     for (const int max_age_frames : {3, 6, 12, 24}) {
-      for (const int min_hits : {3, 6, 12, 20}) {
+      for (const int min_hits : {3, 6, 12, 20, 30}) {
         for (const double acceleration : accelerations) {
           const SimpleOptions options{.gate_m = gate_m,
                                       .max_age_frames = max_age_frames,
@@ -102,8 +111,7 @@ std::vector<Candidate> SortCandidates() {
   return SimpleCandidates(LinkWithKalman, {0.01, 0.03, 0.1});
 }
 
-Candidate BestOf(const std::vector<Candidate>& candidates) {
-  const NoisyRecording& recording = TuningRecording();
+Candidate BestOf(const std::vector<Candidate>& candidates, const NoisyRecording& recording) {
   const Candidate* best = nullptr;
   double best_mota = 0;
   for (const Candidate& candidate : candidates) {
@@ -115,12 +123,14 @@ Candidate BestOf(const std::vector<Candidate>& candidates) {
   return *best;
 }
 
-void BM_LinkNoise(benchmark::State& state, std::vector<Candidate> (*candidates)()) {
-  const Candidate linker = BestOf(candidates());
+void BM_LinkNoise(benchmark::State& state, std::vector<Candidate> (*candidates)(),
+                  const NoiseCase& (*get)()) {
+  const NoiseCase& noise = get();
+  const Candidate linker = BestOf(candidates(), noise.tuning);
   state.SetLabel(linker.options);
   for (auto _ : state) {
     double errors = 0, positions = 0, switches = 0, idf1 = 0, secs = 0;
-    for (const NoisyRecording& recording : Recordings()) {
+    for (const NoisyRecording& recording : noise.recordings) {
       const Stopwatch stopwatch;
       const Tracks tracks = linker.link(recording);
       secs += stopwatch.Seconds();
@@ -128,7 +138,7 @@ void BM_LinkNoise(benchmark::State& state, std::vector<Candidate> (*candidates)(
       switches += static_cast<double>(measures.switches);
       errors += static_cast<double>(measures.misses + measures.false_positives + measures.switches);
       positions += static_cast<double>(measures.truth_positions);
-      idf1 += measures.idf1 / static_cast<double>(Recordings().size());
+      idf1 += measures.idf1 / static_cast<double>(noise.recordings.size());
     }
     state.SetIterationTime(secs);
     state.counters["mota"] = 1 - errors / positions;
@@ -136,24 +146,23 @@ void BM_LinkNoise(benchmark::State& state, std::vector<Candidate> (*candidates)(
     state.counters["switches"] = switches;
   }
 }
-BENCHMARK_CAPTURE(BM_LinkNoise, ours, ExactCandidates)
-    ->Iterations(1)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_LinkNoise, greedy, GreedyCandidates)
-    ->Iterations(1)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_LinkNoise, sort, SortCandidates)
-    ->Iterations(1)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
 
-bool CompareWith(const std::string& peer, const std::string& peer_name) {
+void Once(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(BM_LinkNoise, independent.ours, ExactCandidates, Independent)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkNoise, independent.greedy, GreedyCandidates, Independent)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkNoise, independent.sort, SortCandidates, Independent)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkNoise, runs.ours, ExactCandidates, Runs)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkNoise, runs.greedy, GreedyCandidates, Runs)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkNoise, runs.sort, SortCandidates, Runs)->Apply(Once);
+
+bool CompareWith(const std::string& name, const std::string& noise, const std::string& peer,
+                 const std::string& peer_name) {
   for (const std::string measure : {"mota", "idf1", "switches"}) {
-    Compare({.name = fmt::format("linking.noise.{}.vs_{}", measure, peer),
-             .ours = "BM_LinkNoise/ours",
-             .peer = "BM_LinkNoise/" + peer,
+    Compare({.name = fmt::format("linking.{}.{}.vs_{}", name, measure, peer),
+             .ours = fmt::format("BM_LinkNoise/{}.ours", noise),
+             .peer = fmt::format("BM_LinkNoise/{}.{}", noise, peer),
              .peer_name = peer_name,
              .unit = measure,
              .threads = 1,
@@ -162,8 +171,12 @@ bool CompareWith(const std::string& peer, const std::string& peer_name) {
   return true;
 }
 
-const bool kCompared = CompareWith("greedy", "greedy nearest neighbour") &&
-                       CompareWith("sort", "Kalman and Hungarian, as SORT");
+bool CompareCase(const std::string& name, const std::string& noise) {
+  return CompareWith(name, noise, "greedy", "greedy nearest neighbour") &&
+         CompareWith(name, noise, "sort", "Kalman and Hungarian, as SORT");
+}
+
+const bool kCompared = CompareCase("noise", "independent") && CompareCase("noise_runs", "runs");
 
 }  // namespace
 }  // namespace vantage::bench
