@@ -20,7 +20,7 @@ Status WriteMaps(const std::filesystem::path& path, const OccupancyMaps& maps);
 
 /// Reads maps. Fails on files that are not HDF5, are truncated, lack a part, have parts of another
 /// rank, type or size than above or that store less than they declare, and on values outside [0,
-/// 1].
+/// 1]. MapReader reads the same piece by piece.
 Result<OccupancyMaps> ReadMaps(const std::filesystem::path& path);
 
 }  // namespace vantage
