@@ -3,9 +3,10 @@
 #include "vantage/tracks/track_file.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <span>
@@ -216,31 +217,63 @@ Result<BoxTracks> ReadBoxTracks(const fs::path& path) {
   return collector.Finish<BoxTrack>();
 }
 
-Status WriteTracks(const fs::path& path, const Tracks& tracks, double frames_per_second) {
+TrackWriter::TrackWriter(StagedFile staged, double frames_per_second)
+    : staged_(std::move(staged)),
+      stream_(staged_.temporary(), std::ios::binary),
+      frames_per_second_(frames_per_second) {
+  stream_ << "frame,id,x,y,time,inferred\n";
+}
+
+Result<TrackWriter> TrackWriter::Create(const fs::path& path, double frames_per_second) {
   if (!(std::isfinite(frames_per_second) && frames_per_second > 0)) {
     return Fail("{}: {} frames per second; it must be above 0", path.string(), frames_per_second);
   }
-  std::vector<std::pair<std::int64_t, const TrackPoint*>> points;
+  VANTAGE_ASSIGN_OR_RETURN(StagedFile staged, StagedFile::Create(path));
+  TrackWriter writer(std::move(staged), frames_per_second);
+  VANTAGE_RETURN_IF_ERROR(writer.CheckWritten());
+  return writer;
+}
+
+Status TrackWriter::CheckWritten() const {
+  if (stream_) return {};
+  return Fail("{}: cannot be written: {}", staged_.final_path().string(), std::strerror(errno));
+}
+
+Status TrackWriter::Write(TrackId id, const TrackPoint& point) {
+  const auto number = static_cast<std::int64_t>(id);
+  const auto fail = [&](std::string_view rule) {
+    return Fail("{}: track {} is at ({}, {}) m in frame {}; {}", staged_.final_path().string(),
+                number, point.x_m, point.y_m, point.frame, rule);
+  };
+  if (!std::isfinite(point.x_m) || !std::isfinite(point.y_m)) {
+    return fail("positions must be finite");
+  }
+  const std::pair here(point.frame, id);
+  if (last_ && *last_ >= here) return fail("positions must come by frame, then by id");
+  last_ = here;
+  stream_ << fmt::format("{},{},{:.4f},{:.4f},{:.3f},{:d}\n", point.frame, number, point.x_m,
+                         point.y_m, static_cast<double>(point.frame) / frames_per_second_,
+                         point.inferred);
+  return CheckWritten();
+}
+
+Status TrackWriter::Commit() {
+  stream_.close();
+  VANTAGE_RETURN_IF_ERROR(CheckWritten());
+  return staged_.Commit();
+}
+
+Status WriteTracks(const fs::path& path, const Tracks& tracks, double frames_per_second) {
+  std::vector<std::pair<TrackId, const TrackPoint*>> points;
   for (const Track& track : tracks) {
-    for (const TrackPoint& point : track.points) {
-      if (!std::isfinite(point.x_m) || !std::isfinite(point.y_m)) {
-        return Fail("{}: track {} is at ({}, {}) m in frame {}; positions must be finite",
-                    path.string(), static_cast<std::int64_t>(track.id), point.x_m, point.y_m,
-                    point.frame);
-      }
-      points.emplace_back(static_cast<std::int64_t>(track.id), &point);
-    }
+    for (const TrackPoint& point : track.points) points.emplace_back(track.id, &point);
   }
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return std::pair(a.second->frame, a.first) < std::pair(b.second->frame, b.first);
   });
-  std::string text = "frame,id,x,y,time,inferred\n";
-  for (const auto& [id, point] : points) {
-    fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{:.4f},{:.3f},{:d}\n", point->frame, id,
-                   point->x_m, point->y_m, static_cast<double>(point->frame) / frames_per_second,
-                   point->inferred);
-  }
-  return WriteTextFile(path, text);
+  VANTAGE_ASSIGN_OR_RETURN(TrackWriter writer, TrackWriter::Create(path, frames_per_second));
+  for (const auto& [id, point] : points) VANTAGE_RETURN_IF_ERROR(writer.Write(id, *point));
+  return writer.Commit();
 }
 
 }  // namespace vantage

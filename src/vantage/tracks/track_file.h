@@ -3,7 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
+#include <optional>
+#include <utility>
 
+#include "vantage/base/file.h"
 #include "vantage/base/result.h"
 #include "vantage/tracks/box_track.h"
 #include "vantage/tracks/track.h"
@@ -29,9 +33,30 @@ Result<Tracks> ReadTracks(const std::filesystem::path& path);
 /// Boxes of a MOTChallenge file.
 Result<BoxTracks> ReadBoxTracks(const std::filesystem::path& path);
 
-/// Writes Vantage CSV, whole or not at all: frame,id,x,y,time,inferred in the order of frames, then
-/// ids; x and y to 0.1 mm. `frames_per_second` gives the time of a frame, frame 0 being at 0 s.
-/// Fails on positions that are not finite and unless frames_per_second is above 0.
+/// Writes Vantage CSV as positions become known: frame,id,x,y,time,inferred in the order of frames,
+/// then ids; x and y to 0.1 mm. The file appears whole with Commit, or not at all.
+class TrackWriter {
+ public:
+  /// `frames_per_second` gives the time of a frame, frame 0 being at 0 s. Fails unless it is above
+  /// 0, and where the file cannot be made.
+  static Result<TrackWriter> Create(const std::filesystem::path& path, double frames_per_second);
+
+  /// Fails on positions that are not finite, out of order or twice there.
+  Status Write(TrackId id, const TrackPoint& point);
+
+  Status Commit();
+
+ private:
+  TrackWriter(StagedFile staged, double frames_per_second);
+  Status CheckWritten() const;
+
+  StagedFile staged_;
+  std::ofstream stream_;
+  double frames_per_second_;
+  std::optional<std::pair<FrameIndex, TrackId>> last_;
+};
+
+/// Writes whole tracks as TrackWriter does.
 Status WriteTracks(const std::filesystem::path& path, const Tracks& tracks,
                    double frames_per_second);
 

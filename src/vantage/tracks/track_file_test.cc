@@ -118,6 +118,39 @@ TEST_F(TrackFile, NothingIsWrittenOfTracksThatCannotBe) {
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
+TEST_F(TrackFile, WritesPositionsOneByOne) {
+  const std::filesystem::path whole = folder_ / "whole.csv";
+  const Tracks tracks = {
+      {.id = TrackId{1}, .points = {{0, 1.25, -2.5, false}, {1, 1.5, -2.0, true}}},
+      {.id = TrackId{7}, .points = {{1, 100.0001, 0, false}, {5, 1, 1, false}}},
+  };
+  ASSERT_TRUE(WriteTracks(whole, tracks, 10));
+  {
+    auto writer = TrackWriter::Create(path_, 10);
+    ASSERT_TRUE(writer) << testing::MessageOf(writer);
+    EXPECT_TRUE(writer->Write(TrackId{1}, tracks[0].points[0]));
+    EXPECT_TRUE(writer->Write(TrackId{1}, tracks[0].points[1]));
+    EXPECT_TRUE(writer->Write(TrackId{7}, tracks[1].points[0]));
+    EXPECT_FALSE(std::filesystem::exists(path_)) << "not before it is whole";
+    EXPECT_TRUE(writer->Write(TrackId{7}, tracks[1].points[1]));
+    ASSERT_TRUE(writer->Commit());
+  }
+  EXPECT_EQ(*ReadTextFile(path_), *ReadTextFile(whole));
+}
+
+TEST_F(TrackFile, PositionsOutOfOrderAreRefusedAndLeaveNothing) {
+  {
+    auto writer = TrackWriter::Create(path_, 10);
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE(writer->Write(TrackId{2}, {.frame = 3}));
+    for (const auto& [id, frame] : {std::pair{2, 3}, {1, 3}, {9, 2}}) {
+      EXPECT_THAT(testing::MessageOf(writer->Write(TrackId{id}, {.frame = frame})),
+                  HasSubstr("by frame, then by id"));
+    }
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
 TEST_F(TrackFile, ReadsTheTruthOfPets) {
   const std::filesystem::path data = testing::DataFolder();
   if (data.empty()) GTEST_SKIP() << "no research data";
