@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "link_stream.h"
 #include "vantage/base/file.h"
 #include "vantage/linking/link_maps.h"
 #include "vantage/occupancy/map_file.h"
@@ -18,9 +20,21 @@
 namespace vantage::app {
 namespace {
 
+struct StreamOptions {
+  std::optional<double> lag_secs;  ///< none: the whole recording at once
+};
+
+void VisitOptions(StreamOptions& o, OptionVisitor& v) {
+  v.NumberOr({"lag", "s",
+              "as a stream: positions of a frame are final once the maps of so many seconds more "
+              "are known; only these are in memory"},
+             o.lag_secs, "none", Range::Between(0, 1e6));
+}
+
 struct Flags {
   std::filesystem::path maps, output, scene, data;
-  OptionFlags linking, tracks;
+  OptionFlags stream, linking, tracks;
+  bool gap = false;
 };
 
 /// Defaults, then what the scene says, then the flags given.
@@ -78,6 +92,19 @@ void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result, bool a
 
 Status Run(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const Setup setup, MakeSetup(flags));
+  StreamOptions stream;
+  flags.stream.ApplyTo(stream);
+  if (stream.lag_secs) {
+    return LinkStream({.maps = flags.maps,
+                       .output = flags.output,
+                       .lag_secs = *stream.lag_secs,
+                       .gap = flags.gap,
+                       .linking = setup.linking,
+                       .tracks = setup.tracks,
+                       .doors = setup.doors,
+                       .obstacles = setup.obstacles},
+                      common);
+  }
   // Staged before the work, so that an output that cannot be written fails at once.
   VANTAGE_ASSIGN_OR_RETURN(StagedFile output, StagedFile::Create(flags.output));
   VANTAGE_ASSIGN_OR_RETURN(const OccupancyMaps maps, ReadMaps(flags.maps));
@@ -109,6 +136,12 @@ Command LinkCommand() {
         app.add_option("--data", flags->data,
                        "Folder that paths in the scene are relative to; default: the scene's own")
             ->type_name("DIR");
+        flags->stream = AddOptionFlags(app, StreamOptions{}, "", "Stream");
+        app.add_flag("--gap", flags->gap,
+                     "Link the whole recording too, and report how far the stream's cost is from "
+                     "that optimum")
+            ->group("Stream")
+            ->needs("--lag");
         flags->linking = AddOptionFlags(app, LinkingOptions{}, "", "Linking");
         flags->tracks = AddOptionFlags(app, TrackOptions{}, "", "Tracks");
         return [flags](const CommonFlags& common) { return Run(*flags, common); };
