@@ -39,7 +39,7 @@ struct LiveReport {
 /// Tracks of a stream of maps, given out for good a fixed lag after each frame, in memory for the
 /// maps of that lag. With a lag of the whole recording they are those of LinkMaps. With less, what
 /// comes later than the lag is not known to
-/// - the linking (StreamLinker);
+/// - the linking (StreamLinker): who does not earn the birth cost within the lag is not seen;
 /// - the smoothing: its window ends where the known frames end;
 /// - stretches without support: they are inferred from the frame on from which the next supported
 ///   position is known. While it is not, the track has no position, as at the end of a path; it

@@ -144,11 +144,12 @@ TEST(LiveTracks, ALagOfTheWholeRecordingGivesWhatTheWholeRecordingGives) {
 
 TEST(LiveTracks, PositionsComeAFixedLagAfterTheirFrameAndInOrder) {
   const OccupancyMaps maps = Crowd(3, 9, 120);
-  for (const int lag_frames : {1, 4, 13, 40}) {
-    const Played played = Play(maps, lag_frames / 10.0, {}, {.birth_cost = kLittle});
+  for (const int lag_frames : {0, 1, 4, 13, 40}) {
+    const Played played =
+        Play(maps, lag_frames / 10.0, {.min_length_secs = 0.2}, {.birth_cost = 0});
     EXPECT_EQ(played.report.lag_frames, lag_frames);
     EXPECT_EQ(played.report.linking.final_frames, 120);
-    ASSERT_GT(played.rows.size(), 200u);
+    EXPECT_GT(played.rows.size(), 100u) << lag_frames;
     std::set<TrackId> known;
     for (std::size_t i = 0; i < played.rows.size(); ++i) {
       const TrackRow& row = played.rows[i];
@@ -218,7 +219,7 @@ TEST(LiveTracks, AGapLongerThanTheLagHasPositionsOnlyOnceItsEndIsKnown) {
   EXPECT_EQ(tracks[0].points.size(), 70u - 7u);
   EXPECT_EQ(played.report.inferred, 5);
   // With a lag that covers it, all is as in the whole recording.
-  EXPECT_EQ(Play(maps, 1.3, {.smoothing_secs = 0, .min_length_secs = 0}).report.inferred, 12);
+  EXPECT_EQ(Play(maps, 2, {.smoothing_secs = 0, .min_length_secs = 0}).report.inferred, 12);
 }
 
 TEST(LiveTracks, ShortTracksAreNotShownAndLongOnesFromWhereTheyAreKnownToBeLong) {
