@@ -12,6 +12,7 @@
 #include "command.h"
 #include "link_stream.h"
 #include "vantage/base/file.h"
+#include "vantage/linking/ksp_run.h"
 #include "vantage/linking/link_maps.h"
 #include "vantage/occupancy/map_file.h"
 #include "vantage/scene/scene.h"
@@ -31,8 +32,11 @@ void VisitOptions(StreamOptions& o, OptionVisitor& v) {
              o.lag_secs, "none", Range::Between(0, 1e6));
 }
 
+/// Where the original KSP program writes when nothing is said.
+constexpr const char* kKspOutput = "ksp-out.dat";
+
 struct Flags {
-  std::filesystem::path maps, output, scene, data;
+  std::filesystem::path maps, ksp, output, scene, data;
   OptionFlags stream, linking, tracks;
   bool gap = false;
 };
@@ -90,7 +94,8 @@ void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result, bool a
               {"linking", fmt::format("{:.2f} s", linking.seconds)}});
 }
 
-Status Run(const Flags& flags, const CommonFlags& common) {
+/// `vantage link maps.h5 -o tracks.csv`.
+Status RunMaps(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const Setup setup, MakeSetup(flags));
   StreamOptions stream;
   flags.stream.ApplyTo(stream);
@@ -117,6 +122,28 @@ Status Run(const Flags& flags, const CommonFlags& common) {
   return {};
 }
 
+/// `vantage link --ksp FILE -o out.dat`: the original KSP program's job.
+Status RunKspFile(const Flags& flags, const CommonFlags& common) {
+  const std::filesystem::path output = flags.output.empty() ? kKspOutput : flags.output;
+  VANTAGE_ASSIGN_OR_RETURN(const KspFile file, ReadKspFile(flags.ksp));
+  VANTAGE_ASSIGN_OR_RETURN(const KspReport report,
+                           RunKsp(file, output, MakeRunControl(common, "link", "steps")));
+  if (common.json) {
+    const nlohmann::ordered_json json = {{"frames", report.frames},  {"columns", file.columns},
+                                         {"rows", file.rows},        {"paths", report.paths},
+                                         {"cost", report.cost},      {"seconds", report.seconds},
+                                         {"output", output.string()}};
+    fmt::print("{}\n", json.dump(2));
+    return {};
+  }
+  PrintTable({{"frames", fmt::to_string(report.frames)},
+              {"grid", fmt::format("{} x {} cells", file.columns, file.rows)},
+              {"paths", fmt::format("{}  (cost {:.3f})", report.paths, report.cost)},
+              {"seconds", fmt::format("{:.2f}", report.seconds)},
+              {"output", output.string()}});
+  return {};
+}
+
 }  // namespace
 
 Command LinkCommand() {
@@ -125,17 +152,23 @@ Command LinkCommand() {
       .summary = "Tracks from occupancy maps: the optimal set of paths",
       .define = [](CLI::App& app) -> Action {
         const auto flags = std::make_shared<Flags>();
-        app.add_option("maps", flags->maps, "Occupancy maps (HDF5)")->type_name("FILE")->required();
-        app.add_option("-o,--output", flags->output, "File of tracks to write (CSV)")
-            ->type_name("FILE")
-            ->required();
-        app.add_option("--scene", flags->scene,
-                       "Scene file whose doors, obstacles and tables [linking] and [tracks] "
-                       "apply; flags win over its tables")
+        CLI::Option* maps =
+            app.add_option("maps", flags->maps, "Occupancy maps (HDF5)")->type_name("FILE");
+        app.add_option("-o,--output", flags->output,
+                       "File of tracks to write (CSV); with --ksp that program's output, default "
+                       "ksp-out.dat")
             ->type_name("FILE");
-        app.add_option("--data", flags->data,
-                       "Folder that paths in the scene are relative to; default: the scene's own")
-            ->type_name("DIR");
+        CLI::Option* scene =
+            app.add_option("--scene", flags->scene,
+                           "Scene file whose doors, obstacles and tables [linking] and [tracks] "
+                           "apply; flags win over its tables")
+                ->type_name("FILE");
+        CLI::Option* data =
+            app.add_option("--data", flags->data,
+                           "Folder that paths in the scene are relative to; default: the scene's "
+                           "own")
+                ->type_name("DIR")
+                ->needs(scene);
         flags->stream = AddOptionFlags(app, StreamOptions{}, "", "Stream");
         app.add_flag("--gap", flags->gap,
                      "Link the whole recording too, and report how far the stream's cost is from "
@@ -144,7 +177,24 @@ Command LinkCommand() {
             ->needs("--lag");
         flags->linking = AddOptionFlags(app, LinkingOptions{}, "", "Linking");
         flags->tracks = AddOptionFlags(app, TrackOptions{}, "", "Tracks");
-        return [flags](const CommonFlags& common) { return Run(*flags, common); };
+        CLI::Option* ksp =
+            app.add_option(
+                   "--ksp", flags->ksp,
+                   "Configuration of the original KSP program, in place of maps; its frames "
+                   "are read, relative to its folder, and linked by its rules")
+                ->type_name("FILE");
+        for (CLI::Option* other : {maps, scene, data}) ksp->excludes(other);
+        flags->stream.Exclude(ksp);
+        flags->linking.Exclude(ksp);
+        flags->tracks.Exclude(ksp);
+        app.parse_complete_callback([flags] {
+          if (!flags->ksp.empty()) return;
+          if (flags->maps.empty()) throw CLI::RequiredError("A file of maps or --ksp");
+          if (flags->output.empty()) throw CLI::RequiredError("--output");
+        });
+        return [flags](const CommonFlags& common) {
+          return flags->ksp.empty() ? RunMaps(*flags, common) : RunKspFile(*flags, common);
+        };
       }};
 }
 

@@ -140,6 +140,10 @@ OptionFlags OptionFlags::Add(CLI::App& app, const Visit& visit, const std::strin
   return flags;
 }
 
+void OptionFlags::Exclude(CLI::Option* other) const {
+  for (const auto& [name, flag] : flags_) other->excludes(flag);
+}
+
 void OptionFlags::Apply(const Visit& visit) const {
   FlagSetter setter(flags_);
   visit(setter);
