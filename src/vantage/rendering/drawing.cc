@@ -224,6 +224,23 @@ void Text(cv::Mat& image, const std::string& text, cv::Point2d at, const TextSty
   blend(style.color, thickness, 1);
 }
 
+void Caption(cv::Mat& image, const std::vector<CaptionLine>& lines) {
+  const double height_px = std::max(8.0, image.rows / 64.0);
+  TextStyle style{.height_px = height_px, .bold = true};
+  double width_px = 0;
+  for (const CaptionLine& line : lines) width_px = std::max(width_px, TextWidth(line.text, style));
+  const double line_px = 1.9 * height_px;
+  FilledRectangle(
+      image,
+      {0, 0, width_px + 1.8 * height_px, line_px * static_cast<double>(lines.size()) + height_px},
+      {38, 32, 27}, 0.75);
+  double base = 0;
+  for (const CaptionLine& line : lines) {
+    style.color = line.color;
+    Text(image, line.text, {0.9 * height_px, base += line_px}, style);
+  }
+}
+
 std::vector<double> Multiples(double step, double low, double high) {
   std::vector<double> multiples;
   const auto last = static_cast<std::int64_t>(std::floor(high / step));

@@ -52,6 +52,13 @@ double TextWidth(const std::string& text, const TextStyle& style);
 /// `at`: on the base line. Characters beyond ASCII show as question marks.
 void Text(cv::Mat& image, const std::string& text, cv::Point2d at, const TextStyle& style);
 
+/// Lines of text on a dark ground in the upper left corner.
+struct CaptionLine {
+  std::string text;
+  cv::Scalar color = {235, 235, 235};
+};
+void Caption(cv::Mat& image, const std::vector<CaptionLine>& lines);
+
 /// The multiples of `step` (> 0) in [low, high], ascending: where the lines of a grid are.
 std::vector<double> Multiples(double step, double low, double high);
 

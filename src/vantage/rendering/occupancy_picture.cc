@@ -62,31 +62,6 @@ void Tint(cv::Mat& picture, const cv::Mat& mask, const cv::Scalar& color, double
   mixed.copyTo(picture, mask);
 }
 
-struct CaptionLine {
-  std::string text;
-  cv::Scalar color;
-};
-
-/// Lines of text on a dark ground in the upper left corner.
-void Caption(cv::Mat& picture, const std::vector<CaptionLine>& lines) {
-  const double height_px = std::max(8.0, picture.rows / 64.0);
-  drawing::TextStyle style{.height_px = height_px, .bold = true};
-  double width_px = 0;
-  for (const CaptionLine& line : lines) {
-    width_px = std::max(width_px, drawing::TextWidth(line.text, style));
-  }
-  const double line_px = 1.9 * height_px;
-  drawing::FilledRectangle(
-      picture,
-      {0, 0, width_px + 1.8 * height_px, line_px * static_cast<double>(lines.size()) + height_px},
-      kDarkGround, 0.75);
-  double base = 0;
-  for (const CaptionLine& line : lines) {
-    style.color = line.color;
-    drawing::Text(picture, line.text, {0.9 * height_px, base += line_px}, style);
-  }
-}
-
 }  // namespace
 
 OccupancyPicture::OccupancyPicture(const Scene& scene, const PersonOptions& person,
@@ -210,13 +185,13 @@ cv::Mat OccupancyPicture::DrawPlan() const {
   DrawBorders(plan, plan_);
   DrawCameras(plan, plan_);
   DrawSideLabels(plan);
-  std::vector<CaptionLine> lines = {{fmt::format("{}: {} x {} cells of {} m", scene_name_,
-                                                 grid_.columns, grid_.rows, grid_.cell_m),
-                                     kText},
-                                    {"area", kArea},
-                                    {"extension", kExtension}};
+  std::vector<drawing::CaptionLine> lines = {{fmt::format("{}: {} x {} cells of {} m", scene_name_,
+                                                          grid_.columns, grid_.rows, grid_.cell_m),
+                                              kText},
+                                             {"area", kArea},
+                                             {"extension", kExtension}};
   if (std::ranges::count(visible_, 0) > 0) lines.push_back({"seen by nobody", kUnseenText});
-  Caption(plan, lines);
+  drawing::Caption(plan, lines);
   return plan;
 }
 
@@ -315,10 +290,10 @@ cv::Mat OccupancyPicture::DrawView(std::size_t camera, const cv::Mat& picture) c
     ++cells[in_area_[i]];
     if (!views_[camera].rectangles[i].empty()) ++spoken_for[in_area_[i]];
   }
-  Caption(view,
-          {{names_[camera], CameraColor(camera)},
-           {fmt::format("speaks for {} of {} cells of the area", spoken_for[1], cells[1]), kArea},
-           {fmt::format("and {} of {} of its extension", spoken_for[0], cells[0]), kExtension}});
+  drawing::Caption(
+      view, {{names_[camera], CameraColor(camera)},
+             {fmt::format("speaks for {} of {} cells of the area", spoken_for[1], cells[1]), kArea},
+             {fmt::format("and {} of {} of its extension", spoken_for[0], cells[0]), kExtension}});
   return view;
 }
 
@@ -353,7 +328,7 @@ cv::Mat OccupancyPicture::DrawMap(std::span<const float> q, const std::vector<Pe
                   {at.x + radius_px + 4, at.y - 0.3 * radius_px},
                   {.height_px = 15, .color = color, .halo_px = 2.5, .bold = true});
   }
-  Caption(plan, {{scene_name_, kText}, {fmt::format("{} found", peaks.size()), kHeat}});
+  drawing::Caption(plan, {{scene_name_, kText}, {fmt::format("{} found", peaks.size()), kHeat}});
   return plan;
 }
 
@@ -367,7 +342,7 @@ cv::Mat OccupancyPicture::DrawPeaks(std::size_t camera, const cv::Mat& picture, 
   }
   DrawBordersInView(view, camera);
   DrawPeople(view, cameras_[camera], PeopleOf(peaks), figure_);
-  Caption(view, {{names_[camera], CameraColor(camera)}});
+  drawing::Caption(view, {{names_[camera], CameraColor(camera)}});
   return view;
 }
 
