@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "link_explain.h"
 #include "link_stream.h"
 #include "vantage/base/file.h"
 #include "vantage/linking/ksp_run.h"
@@ -36,33 +37,33 @@ void VisitOptions(StreamOptions& o, OptionVisitor& v) {
 constexpr const char* kKspOutput = "ksp-out.dat";
 
 struct Flags {
-  std::filesystem::path maps, ksp, output, scene, data;
+  std::filesystem::path maps, ksp, output, scene, data, explain;
+  FrameRange frames;
   OptionFlags stream, linking, tracks;
   bool gap = false;
 };
 
 /// Defaults, then what the scene says, then the flags given.
 struct Setup {
+  Scene scene;  ///< without an area, doors and obstacles when none was given
   LinkingOptions linking;
   TrackOptions tracks;
-  std::vector<Polygon> doors, obstacles;
 };
 
 Result<Setup> MakeSetup(const Flags& flags) {
   Setup setup;
   if (!flags.scene.empty()) {
-    VANTAGE_ASSIGN_OR_RETURN(const Scene scene, LoadScene(flags.scene, flags.data));
-    VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("linking", setup.linking));
-    VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("tracks", setup.tracks));
-    setup.doors = scene.doors;
-    setup.obstacles = scene.obstacles;
+    VANTAGE_ASSIGN_OR_RETURN(setup.scene, LoadScene(flags.scene, flags.data));
+    VANTAGE_RETURN_IF_ERROR(setup.scene.stages.Bind("linking", setup.linking));
+    VANTAGE_RETURN_IF_ERROR(setup.scene.stages.Bind("tracks", setup.tracks));
   }
   flags.linking.ApplyTo(setup.linking);
   flags.tracks.ApplyTo(setup.tracks);
   return setup;
 }
 
-void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result, bool as_json) {
+void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result,
+                 const LinkExplanation* explanation, bool as_json) {
   const LinkingReport& linking = result.report.linking;
   std::int64_t positions = 0;
   std::int64_t inferred = 0;
@@ -71,30 +72,36 @@ void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result, bool a
     for (const TrackPoint& point : track.points) inferred += point.inferred ? 1 : 0;
   }
   if (as_json) {
-    const nlohmann::ordered_json json = {{"frames", maps.frame_count()},
-                                         {"columns", maps.grid.columns},
-                                         {"rows", maps.grid.rows},
-                                         {"paths", linking.paths},
-                                         {"cost", linking.cost},
-                                         {"tracks", result.tracks.size()},
-                                         {"dropped_paths", result.report.dropped_paths},
-                                         {"positions", positions},
-                                         {"inferred", inferred},
-                                         {"seconds", linking.seconds}};
+    nlohmann::ordered_json json = {{"frames", maps.frame_count()},
+                                   {"columns", maps.grid.columns},
+                                   {"rows", maps.grid.rows},
+                                   {"paths", linking.paths},
+                                   {"cost", linking.cost},
+                                   {"tracks", result.tracks.size()},
+                                   {"dropped_paths", result.report.dropped_paths},
+                                   {"positions", positions},
+                                   {"inferred", inferred},
+                                   {"seconds", linking.seconds}};
+    if (explanation != nullptr) json["explained"] = explanation->json();
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  PrintTable({{"frames", fmt::to_string(maps.frame_count())},
-              {"grid", fmt::format("{} x {} cells of {} m", maps.grid.columns, maps.grid.rows,
-                                   maps.grid.cell_m)},
-              {"paths", fmt::format("{}  (cost {:.3f})", linking.paths, linking.cost)},
-              {"tracks", fmt::format("{}  ({} paths outside the area or too short)",
-                                     result.tracks.size(), result.report.dropped_paths)},
-              {"positions", fmt::format("{}  ({} inferred)", positions, inferred)},
-              {"linking", fmt::format("{:.2f} s", linking.seconds)}});
+  std::vector<ReportRow> rows = {
+      {"frames", fmt::to_string(maps.frame_count())},
+      {"grid",
+       fmt::format("{} x {} cells of {} m", maps.grid.columns, maps.grid.rows, maps.grid.cell_m)},
+      {"paths", fmt::format("{}  (cost {:.3f})", linking.paths, linking.cost)},
+      {"tracks", fmt::format("{}  ({} paths outside the area or too short)", result.tracks.size(),
+                             result.report.dropped_paths)},
+      {"positions", fmt::format("{}  ({} inferred)", positions, inferred)},
+      {"linking", fmt::format("{:.2f} s", linking.seconds)}};
+  if (explanation != nullptr) {
+    rows.insert(rows.end(), explanation->rows().begin(), explanation->rows().end());
+  }
+  PrintTable(rows);
 }
 
-/// `vantage link maps.h5 -o tracks.csv`.
+/// `vantage link maps.h5 -o tracks.csv --explain DIR --frames A:B`.
 Status RunMaps(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const Setup setup, MakeSetup(flags));
   StreamOptions stream;
@@ -106,19 +113,36 @@ Status RunMaps(const Flags& flags, const CommonFlags& common) {
                        .gap = flags.gap,
                        .linking = setup.linking,
                        .tracks = setup.tracks,
-                       .doors = setup.doors,
-                       .obstacles = setup.obstacles},
+                       .doors = setup.scene.doors,
+                       .obstacles = setup.scene.obstacles},
                       common);
   }
   // Staged before the work, so that an output that cannot be written fails at once.
-  VANTAGE_ASSIGN_OR_RETURN(StagedFile output, StagedFile::Create(flags.output));
+  std::optional<StagedFile> output;
+  if (!flags.output.empty()) {
+    VANTAGE_ASSIGN_OR_RETURN(output, StagedFile::Create(flags.output));
+  }
+  std::optional<LinkExplanation> explanation;
+  if (!flags.explain.empty()) {
+    VANTAGE_ASSIGN_OR_RETURN(explanation, LinkExplanation::Create(flags.explain, flags.frames));
+  }
   VANTAGE_ASSIGN_OR_RETURN(const OccupancyMaps maps, ReadMaps(flags.maps));
-  VANTAGE_ASSIGN_OR_RETURN(const LinkMapsResult result,
-                           LinkMaps(maps, setup.linking, setup.tracks, setup.doors, setup.obstacles,
-                                    MakeRunControl(common, "link", "steps")));
-  VANTAGE_RETURN_IF_ERROR(WriteTracks(output.temporary(), result.tracks, maps.frames_per_second));
-  VANTAGE_RETURN_IF_ERROR(output.Commit());
-  PrintReport(maps, result, common.json);
+  if (explanation) VANTAGE_RETURN_IF_ERROR(explanation->CheckFrames(maps));
+  VANTAGE_ASSIGN_OR_RETURN(
+      const LinkMapsResult result,
+      LinkMaps(maps, setup.linking, setup.tracks, setup.scene.doors, setup.scene.obstacles,
+               MakeRunControl(common, "link", "steps")));
+  if (output) {
+    VANTAGE_RETURN_IF_ERROR(
+        WriteTracks(output->temporary(), result.tracks, maps.frames_per_second));
+  }
+  if (explanation) {
+    VANTAGE_RETURN_IF_ERROR(
+        explanation->Finish({setup.scene, maps, setup.linking, setup.tracks, result.paths},
+                            MakeRunControl(common, "explain", "paths")));
+  }
+  if (output) VANTAGE_RETURN_IF_ERROR(output->Commit());
+  PrintReport(maps, result, explanation ? &*explanation : nullptr, common.json);
   return {};
 }
 
@@ -183,14 +207,37 @@ Command LinkCommand() {
                    "Configuration of the original KSP program, in place of maps; its frames "
                    "are read, relative to its folder, and linked by its rules")
                 ->type_name("FILE");
-        for (CLI::Option* other : {maps, scene, data}) ksp->excludes(other);
+        CLI::Option* explain =
+            app.add_option(
+                   "--explain", flags->explain,
+                   "Folder for pictures and figures that explain the paths of --frames: the "
+                   "map with its paths, where they are weakest, and what other solutions "
+                   "would have cost; must not hold anything yet; without -o nothing but "
+                   "that is made")
+                ->type_name("DIR");
+        CLI::Option* frames = app.add_option_function<std::string>(
+                                     "--frames",
+                                     [flags](const std::string& text) {
+                                       const std::string wrong =
+                                           ParseFrameRange(text, flags->frames);
+                                       if (!wrong.empty())
+                                         throw CLI::ValidationError("--frames", wrong);
+                                     },
+                                     "The frames of --explain, both included")
+                                  ->type_name("A:B")
+                                  ->needs(explain);
+        explain->needs(frames);
+        for (CLI::Option* other : {maps, scene, data, explain}) ksp->excludes(other);
         flags->stream.Exclude(ksp);
+        flags->stream.Exclude(explain);
         flags->linking.Exclude(ksp);
         flags->tracks.Exclude(ksp);
         app.parse_complete_callback([flags] {
           if (!flags->ksp.empty()) return;
           if (flags->maps.empty()) throw CLI::RequiredError("A file of maps or --ksp");
-          if (flags->output.empty()) throw CLI::RequiredError("--output");
+          if (flags->output.empty() && flags->explain.empty()) {
+            throw CLI::RequiredError("--output or --explain");
+          }
         });
         return [flags](const CommonFlags& common) {
           return flags->ksp.empty() ? RunMaps(*flags, common) : RunKspFile(*flags, common);

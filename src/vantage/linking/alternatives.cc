@@ -59,7 +59,7 @@ std::optional<WeakStep> WeakestStep(const LinkedPath& path, const Stretch& stret
 }
 
 Result<Alternatives> Find(const LinkingProblem& problem, const LinkingOptions& options,
-                          const LinkingResult& optimum, const Stretch& stretch,
+                          const std::vector<LinkedPath>& optimum, const Stretch& stretch,
                           const RunControl& control) {
   if (stretch.first_frame < 0 || stretch.first_frame > stretch.last_frame ||
       stretch.last_frame >= problem.frames || stretch.margin_frames < 0) {
@@ -74,14 +74,14 @@ Result<Alternatives> Find(const LinkingProblem& problem, const LinkingOptions& o
       stretch.last_frame + std::min(stretch.margin_frames, problem.frames - 1 - stretch.last_frame);
   VANTAGE_ASSIGN_OR_RETURN(
       linking::ResidualNetwork network,
-      linking::ResidualNetwork::Create(problem, options, optimum.paths, first, last, control));
+      linking::ResidualNetwork::Create(problem, options, optimum, first, last, control));
   Alternatives alternatives;
   // Every residual cycle through a vertex of the stretch takes a move there back in time, or passes
   // source or sink: otherwise it would only go forward in time.
   Cost next_best = std::numeric_limits<Cost>::max() / 2;
-  for (std::size_t i = 0; i < optimum.paths.size(); ++i) {
+  for (std::size_t i = 0; i < optimum.size(); ++i) {
     if (control.Stopped()) return Cancelled();
-    const LinkedPath& path = optimum.paths[i];
+    const LinkedPath& path = optimum[i];
     if (path.first_frame > stretch.last_frame ||
         path.first_frame + std::ssize(path.cells) <= stretch.first_frame) {
       continue;
@@ -92,7 +92,7 @@ Result<Alternatives> Find(const LinkingProblem& problem, const LinkingOptions& o
     part.path = i;
     part.weakest = weakest;
     alternatives.paths.push_back(std::move(part));
-    control.Report(static_cast<std::int64_t>(i), std::ssize(optimum.paths));
+    control.Report(static_cast<std::int64_t>(i), std::ssize(optimum));
   }
   if (const auto cycle =
           network.CycleThroughEdgeAndFrames(stretch.first_frame, stretch.last_frame, next_best)) {
@@ -106,15 +106,15 @@ Result<Alternatives> Find(const LinkingProblem& problem, const LinkingOptions& o
                                        .first_frame = walk->first_frame,
                                        .last_frame = walk->last_frame};
   }
-  control.Report(std::ssize(optimum.paths), std::ssize(optimum.paths));
+  control.Report(std::ssize(optimum), std::ssize(optimum));
   return alternatives;
 }
 
 }  // namespace
 
 Result<Alternatives> FindAlternatives(const LinkingProblem& problem, const LinkingOptions& options,
-                                      const LinkingResult& optimum, const Stretch& stretch,
-                                      const RunControl& control) {
+                                      const std::vector<LinkedPath>& optimum,
+                                      const Stretch& stretch, const RunControl& control) {
   try {
     return Find(problem, options, optimum, stretch, control);
   } catch (const std::bad_alloc&) {

@@ -72,11 +72,11 @@ struct Alternatives {
   std::optional<FurtherPath> further;
 };
 
-/// `problem` and `options` as given to LinkPaths, `optimum` as it answered. Memory grows with the
-/// frames of stretch and margin, about 90 bytes a node. Fails on a stretch that is not in the
-/// problem, and when `optimum` is not a solution of the problem, or not an optimal one.
+/// `problem` and `options` as given to LinkPaths, `optimum` the paths of its answer. Memory grows
+/// with the frames of stretch and margin, about 90 bytes a node. Fails on a stretch that is not in
+/// the problem, and when `optimum` is not a solution of the problem, or not an optimal one.
 Result<Alternatives> FindAlternatives(const LinkingProblem& problem, const LinkingOptions& options,
-                                      const LinkingResult& optimum, const Stretch& stretch,
-                                      const RunControl& control = {});
+                                      const std::vector<LinkedPath>& optimum,
+                                      const Stretch& stretch, const RunControl& control = {});
 
 }  // namespace vantage

@@ -257,7 +257,8 @@ TEST(Alternatives, EqualEnumerationOnTinyProblems) {
     stretch.first_frame = random.Int(0, instance.frames - 1);
     stretch.last_frame = random.Int(static_cast<int>(stretch.first_frame), instance.frames - 1);
     stretch.margin_frames = random.Chance(0.5) ? 1000 : random.Int(0, 1);
-    const auto found = FindAlternatives(instance.problem(), instance.options, *optimum, stretch);
+    const auto found =
+        FindAlternatives(instance.problem(), instance.options, optimum->paths, stretch);
     ASSERT_TRUE(found) << found.error().message;
     const Expected expected = ByEnumeration(instance, *optimum, stretch);
     ExpectSame(found->next_best, expected.next_best);
@@ -312,7 +313,7 @@ TEST(Alternatives, TellWhereAPathIsWeak) {
   const Instance instance = Corridor();
   const auto optimum = LinkPaths(instance.problem(), instance.options);
   ASSERT_EQ(optimum->paths.size(), 1U);
-  const auto found = FindAlternatives(instance.problem(), instance.options, *optimum,
+  const auto found = FindAlternatives(instance.problem(), instance.options, optimum->paths,
                                       {.first_frame = 1, .last_frame = 4, .margin_frames = 10});
   ASSERT_EQ(MessageOf(found), "");
   ASSERT_EQ(found->paths.size(), 1U);
@@ -338,13 +339,13 @@ TEST(Alternatives, WhatLiesOutsideTheMarginIsFixed) {
   const Instance instance = Corridor();
   const auto optimum = LinkPaths(instance.problem(), instance.options);
   // From frame 3 alone, nothing can change: what comes before and after is fixed.
-  const auto one = FindAlternatives(instance.problem(), instance.options, *optimum,
+  const auto one = FindAlternatives(instance.problem(), instance.options, optimum->paths,
                                     {.first_frame = 3, .last_frame = 3, .margin_frames = 0});
   ASSERT_EQ(MessageOf(one), "");
   EXPECT_EQ(one->next_best, std::nullopt);
   EXPECT_FALSE(one->paths.at(0).weakest);
   EXPECT_FALSE(one->further);
-  const auto three = FindAlternatives(instance.problem(), instance.options, *optimum,
+  const auto three = FindAlternatives(instance.problem(), instance.options, optimum->paths,
                                       {.first_frame = 3, .last_frame = 3, .margin_frames = 1});
   EXPECT_NEAR(three->next_best.value(), std::log(999.0 / 9), 1e-3);
 }
@@ -353,7 +354,7 @@ TEST(Alternatives, ATieCostsNothing) {
   Instance instance = Corridor();
   instance.probability[3 * 5 + 3] = 0.999F;
   const auto optimum = LinkPaths(instance.problem(), instance.options);
-  const auto found = FindAlternatives(instance.problem(), instance.options, *optimum,
+  const auto found = FindAlternatives(instance.problem(), instance.options, optimum->paths,
                                       {.first_frame = 0, .last_frame = 5, .margin_frames = 0});
   EXPECT_EQ(found->next_best, 0);
   EXPECT_EQ(found->paths.at(0).weakest->margin, 0);
@@ -377,7 +378,7 @@ TEST(Alternatives, HoldOnAGridOfUsualSize) {
   ASSERT_GT(optimum->paths.size(), 3U);
   double cost = 0;
   double lowest = kNone;
-  const auto found = FindAlternatives(instance.problem(), instance.options, *optimum,
+  const auto found = FindAlternatives(instance.problem(), instance.options, optimum->paths,
                                       {.first_frame = 0, .last_frame = 29, .margin_frames = 0});
   ASSERT_EQ(MessageOf(found), "");
   ASSERT_EQ(found->paths.size(), optimum->paths.size());
@@ -396,7 +397,7 @@ TEST(Alternatives, RefuseWhatIsNoOptimum) {
   const Instance instance = Corridor();
   const auto optimum = LinkPaths(instance.problem(), instance.options);
   const auto message = [&](const LinkingResult& result, const Stretch& stretch) {
-    return MessageOf(FindAlternatives(instance.problem(), instance.options, result, stretch));
+    return MessageOf(FindAlternatives(instance.problem(), instance.options, result.paths, stretch));
   };
   const Stretch all = {.first_frame = 0, .last_frame = 5};
   EXPECT_THAT(message(*optimum, {.first_frame = 0, .last_frame = 6}), HasSubstr("frame 0 to 6"));

@@ -8,23 +8,28 @@
 
 namespace vantage {
 
+LinkingProblem ProblemOf(const OccupancyMaps& maps, std::span<const std::uint8_t> access,
+                         std::span<const std::uint8_t> obstacle) {
+  return {.columns = maps.grid.columns,
+          .rows = maps.grid.rows,
+          .frames = maps.frame_count(),
+          .probability = maps.values,
+          .access = access,
+          .obstacle = obstacle,
+          .cell_m = maps.grid.cell_m,
+          .frames_per_second = maps.frames_per_second};
+}
+
 Result<LinkMapsResult> LinkMaps(const OccupancyMaps& maps, const LinkingOptions& linking,
                                 const TrackOptions& tracks, std::span<const Polygon> doors,
                                 std::span<const Polygon> obstacles, const RunControl& control) {
   const std::vector<std::uint8_t> access = AccessCells(maps, linking.access, doors);
   const std::vector<std::uint8_t> obstacle = CellsIn(maps.grid, obstacles);
-  VANTAGE_ASSIGN_OR_RETURN(const LinkingResult linked,
-                           LinkPaths({.columns = maps.grid.columns,
-                                      .rows = maps.grid.rows,
-                                      .frames = maps.frame_count(),
-                                      .probability = maps.values,
-                                      .access = access,
-                                      .obstacle = obstacle,
-                                      .cell_m = maps.grid.cell_m,
-                                      .frames_per_second = maps.frames_per_second},
-                                     linking, control));
+  VANTAGE_ASSIGN_OR_RETURN(LinkingResult linked,
+                           LinkPaths(ProblemOf(maps, access, obstacle), linking, control));
   LinkMapsResult result;
   VANTAGE_ASSIGN_OR_RETURN(result.tracks, BuildTracks(linked.paths, maps, tracks));
+  result.paths = std::move(linked.paths);
   result.report.linking = linked.report;
   result.report.dropped_paths =
       linked.report.paths - static_cast<std::int64_t>(result.tracks.size());

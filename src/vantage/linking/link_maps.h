@@ -22,8 +22,14 @@ struct LinkMapsReport {
 
 struct LinkMapsResult {
   Tracks tracks;
+  /// What the tracks are made from: the optimum.
+  std::vector<LinkedPath> paths;
   LinkMapsReport report;
 };
+
+/// The problem of LinkPaths that LinkMaps solves; it refers to its arguments.
+LinkingProblem ProblemOf(const OccupancyMaps& maps, std::span<const std::uint8_t> access,
+                         std::span<const std::uint8_t> obstacle);
 
 /// From maps to tracks: the optimal set of paths over area and extension, then their positions in
 /// the area. `doors` are places inside where people come and go, `obstacles` where nobody stands.

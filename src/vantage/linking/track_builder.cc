@@ -38,6 +38,10 @@ void VisitOptions(TrackOptions& o, OptionVisitor& v) {
            Range::Between(0, 1e6));
 }
 
+bool IsSeen(const OccupancyMaps& maps, std::int64_t frame, CellIndex cell, double support) {
+  return Refine(maps, frame, cell, support).seen;
+}
+
 Result<Tracks> BuildTracks(const std::vector<LinkedPath>& paths, const OccupancyMaps& maps,
                            const TrackOptions& options) {
   VANTAGE_ASSIGN_OR_RETURN(const PositionRefiner refiner, PositionRefiner::Create(maps, options));

@@ -25,6 +25,9 @@ struct TrackOptions {
 };
 void VisitOptions(TrackOptions& options, OptionVisitor& visitor);
 
+/// True when the position counts as seen: the 3 x 3 cells around `cell` hold `support` together.
+bool IsSeen(const OccupancyMaps& maps, std::int64_t frame, CellIndex cell, double support);
+
 /// Tracks of the paths, inside the area of interest only. A position is the mean of the 3 x 3 cells
 /// around the path's cell, weighted by their probabilities, then smoothed; where nothing supports
 /// it, it lies on the straight line between the supported positions before and after and is marked
