@@ -3,6 +3,8 @@
 #include "vantage/linking/access.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace vantage {
 namespace {
@@ -45,6 +47,26 @@ std::vector<std::uint8_t> AccessCells(const OccupancyMaps& maps, AccessRule rule
     }
   }
   return access;
+}
+
+Result<std::vector<Polygon>> DoorsAndEntrances(const GroundGrid& grid,
+                                               std::span<const Polygon> doors,
+                                               std::span<const Eigen::Vector2d> entrances_m) {
+  std::vector<Polygon> all(doors.begin(), doors.end());
+  for (const Eigen::Vector2d& entrance : entrances_m) {
+    const std::optional<CellIndex> cell = grid.CellAt(entrance);
+    if (!cell) {
+      return Fail(
+          "area.entrances: ({}, {}) is outside the grid, which goes from ({}, {}) to ({}, {}) m",
+          entrance.x(), entrance.y(), grid.min_x_m, grid.min_y_m,
+          grid.min_x_m + grid.columns * grid.cell_m, grid.min_y_m + grid.rows * grid.cell_m);
+    }
+    const Eigen::Vector2d half = Eigen::Vector2d::Constant(grid.cell_m / 2);
+    const Eigen::Vector2d center = grid.Center(*cell);
+    VANTAGE_ASSIGN_OR_RETURN(Polygon square, Polygon::Rectangle(center - half, center + half));
+    all.push_back(std::move(square));
+  }
+  return all;
 }
 
 }  // namespace vantage

@@ -56,6 +56,22 @@ TEST(Access, DoorsCountUnderEveryRule) {
   EXPECT_EQ(std::count(only_doors.begin(), only_doors.end(), 1), 1);
 }
 
+TEST(Access, EntrancesAreTheCellsOfTheirPoints) {
+  const OccupancyMaps maps = EmptyMaps(5, 4, 1);
+  const std::vector<Polygon> doors = {Polygon::Rectangle({0, 0}, {1, 1}).value()};
+  // Amid a cell, on a corner of cells, and twice the same.
+  const std::vector<Eigen::Vector2d> points = {{2.5, 1.5}, {4, 3}, {2.1, 1.9}};
+  const auto all = DoorsAndEntrances(maps.grid, doors, points);
+  ASSERT_TRUE(all) << testing::MessageOf(all);
+  const std::vector<std::uint8_t> expected = {1, 0, 0, 0, 0,  //
+                                              0, 0, 1, 0, 0,  //
+                                              0, 0, 0, 0, 0,  //
+                                              0, 0, 0, 0, 1};
+  EXPECT_EQ(AccessCells(maps, AccessRule::kDoors, *all), expected);
+  EXPECT_THAT(testing::MessageOf(DoorsAndEntrances(maps.grid, {}, {{{5.5, 1.0}}})),
+              ::testing::HasSubstr("area.entrances: (5.5, 1) is outside the grid"));
+}
+
 TEST(LinkMaps, OnePersonWhoWalksAcrossIsOneTrackInsideTheArea) {
   OccupancyMaps maps = EmptyMaps(12, 5, 24);
   maps.first_frame = 100;

@@ -8,6 +8,7 @@
 
 #include "vantage/base/parallel.h"
 #include "vantage/base/stopwatch.h"
+#include "vantage/linking/access.h"
 #include "vantage/pipeline/ground.h"
 #include "vantage/pipeline/mask_stream.h"
 #include "vantage/pipeline/recent_tracks.h"
@@ -74,6 +75,8 @@ class Feedback {
                                                 const StageOptions& options,
                                                 const MaskStream& stream,
                                                 const OccupancyMaps& like) {
+    VANTAGE_ASSIGN_OR_RETURN(std::vector<Polygon> doors,
+                             DoorsAndEntrances(like.grid, scene.doors, scene.entrances_m));
     const auto learns = [](const auto& subtractor) { return subtractor.has_value(); };
     if (!options.hold.standing || std::ranges::none_of(stream.subtractors(), learns)) {
       return std::nullopt;
@@ -84,7 +87,7 @@ class Feedback {
         OccupiedRegions occupied,
         OccupiedRegions::Create(std::move(cameras), person, options.hold, scene.frames_per_second));
     RecentTracks recent(like, occupied.window_frames(), options.linking, options.tracks,
-                        scene.doors, scene.obstacles);
+                        std::move(doors), scene.obstacles);
     return Feedback(std::move(occupied), std::move(recent));
   }
 
@@ -199,9 +202,11 @@ Result<TrackingResult> TrackPeople(const Scene& scene, const StageOptions& optio
   const Stopwatch stopwatch;
   VANTAGE_ASSIGN_OR_RETURN(MapsResult mapped,
                            ComputeMaps(scene, options, threads, control, mask_sink));
-  VANTAGE_ASSIGN_OR_RETURN(LinkMapsResult linked,
-                           LinkMaps(mapped.maps, options.linking, options.tracks, scene.doors,
-                                    scene.obstacles, control));
+  VANTAGE_ASSIGN_OR_RETURN(const std::vector<Polygon> doors,
+                           DoorsAndEntrances(mapped.maps.grid, scene.doors, scene.entrances_m));
+  VANTAGE_ASSIGN_OR_RETURN(
+      LinkMapsResult linked,
+      LinkMaps(mapped.maps, options.linking, options.tracks, doors, scene.obstacles, control));
   TrackingResult result;
   result.tracks = std::move(linked.tracks);
   result.maps = std::move(mapped.maps);

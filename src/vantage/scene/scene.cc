@@ -53,11 +53,17 @@ Result<std::vector<Polygon>> ReadPolygons(const TableReader& area, std::string_v
 
 Status ReadArea(const TableReader& root, Scene& scene) {
   VANTAGE_ASSIGN_OR_RETURN(const TableReader area, root.Table("area"));
-  VANTAGE_RETURN_IF_ERROR(area.AllowOnly({"polygon", "doors", "obstacles"}));
+  VANTAGE_RETURN_IF_ERROR(area.AllowOnly({"polygon", "doors", "entrances", "obstacles"}));
   VANTAGE_ASSIGN_OR_RETURN(const auto corners, area.Rows("polygon", 2));
   VANTAGE_ASSIGN_OR_RETURN(scene.area, MakePolygon(area, "polygon", corners));
   VANTAGE_ASSIGN_OR_RETURN(scene.doors, ReadPolygons(area, "doors"));
   VANTAGE_ASSIGN_OR_RETURN(scene.obstacles, ReadPolygons(area, "obstacles"));
+  if (area.Has("entrances")) {
+    VANTAGE_ASSIGN_OR_RETURN(const auto points, area.Rows("entrances", 2));
+    for (const std::vector<double>& point : points) {
+      scene.entrances_m.emplace_back(point[0], point[1]);
+    }
+  }
   return {};
 }
 

@@ -107,6 +107,8 @@ struct Scene {
   Polygon area;
   /// Places where people come and go inside the area; empty: only the border of what is seen.
   std::vector<Polygon> doors;
+  /// The same as a list: the cells that these points lie in.
+  std::vector<Eigen::Vector2d> entrances_m;
   /// Places where nobody can stand.
   std::vector<Polygon> obstacles;
   GridOptions grid;

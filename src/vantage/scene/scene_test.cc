@@ -27,6 +27,7 @@ frame_count = 100
 polygon = [[0, 0], [6, 0], [6, 4.5], [0, 4.5]]
 doors = [[[0, 0], [1, 0], [1, 1]]]
 obstacles = [[[3, 3], [4, 3], [4, 4]], [[5, 1], [5.5, 1], [5.5, 2]]]
+entrances = [[2.5, 1], [6, 4.5]]
 
 [grid]
 cell = 0.25
@@ -112,6 +113,7 @@ TEST_F(SceneTest, ReadsEveryField) {
   EXPECT_DOUBLE_EQ(scene->area.area_m2(), 27);
   EXPECT_EQ(scene->doors.size(), 1u);
   EXPECT_EQ(scene->obstacles.size(), 2u);
+  EXPECT_THAT(scene->entrances_m, ElementsAre(Eigen::Vector2d(2.5, 1), Eigen::Vector2d(6, 4.5)));
   EXPECT_EQ(scene->grid.cell_m, 0.25);
   EXPECT_EQ(scene->grid.extension_m, 1);
   EXPECT_EQ(scene->person.width_m, 0.7);
@@ -159,7 +161,7 @@ TEST_F(SceneTest, StageTablesAreBoundLater) {
   const Result<Scene> wrong = Load(With("depth = 2", "depth = 20"));
   ASSERT_TRUE(wrong);
   EXPECT_THAT(MessageOf(wrong->stages.Bind("linking", options)),
-              HasSubstr("scene.toml:20: linking.depth: is 20; it must be between 0 and 10 cells"));
+              HasSubstr("scene.toml:21: linking.depth: is 20; it must be between 0 and 10 cells"));
 }
 
 TEST_F(SceneTest, PathsAreRelativeToTheSceneOrToTheData) {
@@ -203,22 +205,24 @@ TEST_F(SceneTest, ErrorsNameFileLineAndKey) {
       {With("[6, 0], [6, 4.5]", "[6, 4.5], [6, 0]"), "scene.toml:7: area.polygon: area: the edges"},
       {With("[[0, 0], [6, 0], [6, 4.5], [0, 4.5]]", "[[0, 0], [6, 0]]"), "2 corners"},
       {With("[1, 0], [1, 1]]]", "[1, 0]]]"), "scene.toml:8: area.doors: "},
+      {With("[[2.5, 1], [6, 4.5]]", "[2.5, 1]"), "scene.toml:10: area.entrances: "},
+      {With("[2.5, 1]", "[2.5, inf]"), "scene.toml:10: area.entrances: holds inf"},
       {With("cell = 0.25", "cell = 0"),
-       "scene.toml:12: grid.cell: is 0; it must be between 0.02 and 10 m"},
+       "scene.toml:13: grid.cell: is 0; it must be between 0.02 and 10 m"},
       {With("cell = 0.25", "size = 1"),
-       "scene.toml:12: grid.size: unknown key; allowed are cell, extension, max_extension, "
+       "scene.toml:13: grid.size: unknown key; allowed are cell, extension, max_extension, "
        "covering_share"},
       {With("shape = \"box\"", "shape = \"cone\""),
-       "scene.toml:17: person.shape: is \"cone\"; it must be one"},
+       "scene.toml:18: person.shape: is \"cone\"; it must be one"},
       {With("width = 0.7", "width = nan"),
-       "scene.toml:16: person.width: is nan; it must be between 0.05 and 5 m, or \"auto\""},
+       "scene.toml:17: person.width: is nan; it must be between 0.05 and 5 m, or \"auto\""},
       {With("width = 0.7", "width = \"wide\""),
-       "scene.toml:16: person.width: is \"wide\"; it must"},
+       "scene.toml:17: person.width: is \"wide\"; it must"},
       {"linking = 3\n" + With("[linking]\ndepth = 2", ""),
        "scene.toml:1: linking: is 3; it must be a table"},
       {With("\"left\"", "\"right\""), "cameras[1].name: is \"right\" as another camera's is"},
       {With("\"left\"", "\"../left\""),
-       "scene.toml:23: cameras[0].name: is \"../left\"; a name has"},
+       "scene.toml:24: cameras[0].name: is \"../left\"; a name has"},
       {With("video", "vidoe"), "cameras[0].source.vidoe: unknown key, did you mean video?"},
       {With("video = \"left.avi\"", ""),
        "cameras[0].source: gives none; it must give exactly one of"},
@@ -258,7 +262,7 @@ TEST_F(SceneTest, ASceneNeedsCameras) {
   EXPECT_THAT(ErrorOf("cameras = []\n" + without),
               HasSubstr("cameras: is an array of 0; it must be one or"));
   const std::string uncalibrated = text.substr(0, text.find("[cameras.calibration.pinhole]"));
-  EXPECT_EQ(ErrorOf(uncalibrated), "scene.toml:22: cameras[0].calibration: is missing");
+  EXPECT_EQ(ErrorOf(uncalibrated), "scene.toml:23: cameras[0].calibration: is missing");
 }
 
 TEST_F(SceneTest, CamerasMustSeeGround) {
