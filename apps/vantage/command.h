@@ -58,8 +58,8 @@ class OptionFlags {
   static OptionFlags Add(CLI::App& app, const Visit& visit, const std::string& prefix,
                          const std::string& group);
 
-  /// Makes giving any of the flags together with `other` a usage error.
-  void Exclude(CLI::Option* other) const;
+  /// A flag that was given, "--depth"; empty when none was.
+  std::string AnyGiven() const;
 
   /// Sets the fields whose flags were given.
   void Apply(const Visit& visit) const;

@@ -13,6 +13,7 @@
 #include "link_explain.h"
 #include "link_stream.h"
 #include "vantage/base/file.h"
+#include "vantage/linking/access.h"
 #include "vantage/linking/ksp_run.h"
 #include "vantage/linking/link_maps.h"
 #include "vantage/occupancy/map_file.h"
@@ -103,7 +104,7 @@ void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result,
 
 /// `vantage link maps.h5 -o tracks.csv --explain DIR --frames A:B`.
 Status RunMaps(const Flags& flags, const CommonFlags& common) {
-  VANTAGE_ASSIGN_OR_RETURN(const Setup setup, MakeSetup(flags));
+  VANTAGE_ASSIGN_OR_RETURN(Setup setup, MakeSetup(flags));
   StreamOptions stream;
   flags.stream.ApplyTo(stream);
   if (stream.lag_secs) {
@@ -114,7 +115,8 @@ Status RunMaps(const Flags& flags, const CommonFlags& common) {
                        .linking = setup.linking,
                        .tracks = setup.tracks,
                        .doors = setup.scene.doors,
-                       .obstacles = setup.scene.obstacles},
+                       .obstacles = setup.scene.obstacles,
+                       .entrances_m = setup.scene.entrances_m},
                       common);
   }
   // Staged before the work, so that an output that cannot be written fails at once.
@@ -127,6 +129,8 @@ Status RunMaps(const Flags& flags, const CommonFlags& common) {
     VANTAGE_ASSIGN_OR_RETURN(explanation, LinkExplanation::Create(flags.explain, flags.frames));
   }
   VANTAGE_ASSIGN_OR_RETURN(const OccupancyMaps maps, ReadMaps(flags.maps));
+  VANTAGE_ASSIGN_OR_RETURN(
+      setup.scene.doors, DoorsAndEntrances(maps.grid, setup.scene.doors, setup.scene.entrances_m));
   if (explanation) VANTAGE_RETURN_IF_ERROR(explanation->CheckFrames(maps));
   VANTAGE_ASSIGN_OR_RETURN(
       const LinkMapsResult result,
@@ -168,6 +172,28 @@ Status RunKspFile(const Flags& flags, const CommonFlags& common) {
   return {};
 }
 
+/// Throws what CLI11 throws. It could itself exclude `others` and the options from --ksp, but then
+/// the help of each would say so.
+void CheckUsage(const Flags& flags, const std::vector<CLI::Option*>& others) {
+  if (!flags.ksp.empty()) {
+    for (const CLI::Option* other : others) {
+      if (other->count() > 0) throw CLI::ExcludesError("--ksp", other->get_name());
+    }
+    for (const OptionFlags* options : {&flags.stream, &flags.linking, &flags.tracks}) {
+      const std::string given = options->AnyGiven();
+      if (!given.empty()) throw CLI::ExcludesError("--ksp", given);
+    }
+    return;
+  }
+  if (flags.maps.empty()) throw CLI::RequiredError("A file of maps or --ksp");
+  if (!flags.explain.empty() && !flags.stream.AnyGiven().empty()) {
+    throw CLI::ExcludesError("--explain", flags.stream.AnyGiven());
+  }
+  if (flags.output.empty() && flags.explain.empty()) {
+    throw CLI::RequiredError("--output or --explain");
+  }
+}
+
 }  // namespace
 
 Command LinkCommand() {
@@ -183,16 +209,16 @@ Command LinkCommand() {
                        "ksp-out.dat")
             ->type_name("FILE");
         CLI::Option* scene =
-            app.add_option("--scene", flags->scene,
-                           "Scene file whose doors, obstacles and tables [linking] and [tracks] "
-                           "apply; flags win over its tables")
+            app.add_option(
+                   "--scene", flags->scene,
+                   "Scene file whose doors, entrances, obstacles and tables [linking] and [tracks] "
+                   "apply; flags win over its tables")
                 ->type_name("FILE");
-        CLI::Option* data =
-            app.add_option("--data", flags->data,
-                           "Folder that paths in the scene are relative to; default: the scene's "
-                           "own")
-                ->type_name("DIR")
-                ->needs(scene);
+        app.add_option("--data", flags->data,
+                       "Folder that paths in the scene are relative to; default: the scene's "
+                       "own")
+            ->type_name("DIR")
+            ->needs(scene);
         flags->stream = AddOptionFlags(app, StreamOptions{}, "", "Stream");
         app.add_flag("--gap", flags->gap,
                      "Link the whole recording too, and report how far the stream's cost is from "
@@ -201,12 +227,10 @@ Command LinkCommand() {
             ->needs("--lag");
         flags->linking = AddOptionFlags(app, LinkingOptions{}, "", "Linking");
         flags->tracks = AddOptionFlags(app, TrackOptions{}, "", "Tracks");
-        CLI::Option* ksp =
-            app.add_option(
-                   "--ksp", flags->ksp,
-                   "Configuration of the original KSP program, in place of maps; its frames "
-                   "are read, relative to its folder, and linked by its rules")
-                ->type_name("FILE");
+        app.add_option("--ksp", flags->ksp,
+                       "Configuration of the original KSP program, in place of maps; its frames "
+                       "are read, relative to its folder, and linked by its rules")
+            ->type_name("FILE");
         CLI::Option* explain =
             app.add_option(
                    "--explain", flags->explain,
@@ -215,30 +239,17 @@ Command LinkCommand() {
                    "would have cost; must not hold anything yet; without -o nothing but "
                    "that is made")
                 ->type_name("DIR");
-        CLI::Option* frames = app.add_option_function<std::string>(
-                                     "--frames",
-                                     [flags](const std::string& text) {
-                                       const std::string wrong =
-                                           ParseFrameRange(text, flags->frames);
-                                       if (!wrong.empty())
-                                         throw CLI::ValidationError("--frames", wrong);
-                                     },
+        CLI::Option* frames = app.add_option(
+                                     "--frames", [](const CLI::results_t&) { return true; },
                                      "The frames of --explain, both included")
+                                  ->check([flags](const std::string& text) {
+                                    return ParseFrameRange(text, flags->frames);
+                                  })
                                   ->type_name("A:B")
                                   ->needs(explain);
         explain->needs(frames);
-        for (CLI::Option* other : {maps, scene, data, explain}) ksp->excludes(other);
-        flags->stream.Exclude(ksp);
-        flags->stream.Exclude(explain);
-        flags->linking.Exclude(ksp);
-        flags->tracks.Exclude(ksp);
-        app.parse_complete_callback([flags] {
-          if (!flags->ksp.empty()) return;
-          if (flags->maps.empty()) throw CLI::RequiredError("A file of maps or --ksp");
-          if (flags->output.empty() && flags->explain.empty()) {
-            throw CLI::RequiredError("--output or --explain");
-          }
-        });
+        app.parse_complete_callback(
+            [flags, others = std::vector{maps, scene, explain}] { CheckUsage(*flags, others); });
         return [flags](const CommonFlags& common) {
           return flags->ksp.empty() ? RunMaps(*flags, common) : RunKspFile(*flags, common);
         };

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "vantage/linking/access.h"
 #include "vantage/linking/link_maps.h"
 #include "vantage/linking/live_tracks.h"
 #include "vantage/occupancy/map_file.h"
@@ -75,9 +76,10 @@ void PrintReport(const GroundGrid& grid, const LinkStreamJob& job, const LiveRep
 
 }  // namespace
 
-Status LinkStream(const LinkStreamJob& job, const CommonFlags& common) {
+Status LinkStream(LinkStreamJob job, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const MapReader reader, MapReader::Open(job.maps));
   const OccupancyMaps& header = reader.header();
+  VANTAGE_ASSIGN_OR_RETURN(job.doors, DoorsAndEntrances(header.grid, job.doors, job.entrances_m));
   VANTAGE_ASSIGN_OR_RETURN(
       LiveTracks live,
       LiveTracks::Create(header, job.linking, job.tracks, job.lag_secs, job.doors, job.obstacles));

@@ -19,10 +19,11 @@ struct LinkStreamJob {
   LinkingOptions linking;
   TrackOptions tracks;
   std::vector<Polygon> doors, obstacles;
+  std::vector<Eigen::Vector2d> entrances_m;
 };
 
 /// `vantage link --lag`: reads one map after another, writes positions as they become final, and
 /// prints the report.
-Status LinkStream(const LinkStreamJob& job, const CommonFlags& common);
+Status LinkStream(LinkStreamJob job, const CommonFlags& common);
 
 }  // namespace vantage::app

@@ -140,8 +140,11 @@ OptionFlags OptionFlags::Add(CLI::App& app, const Visit& visit, const std::strin
   return flags;
 }
 
-void OptionFlags::Exclude(CLI::Option* other) const {
-  for (const auto& [name, flag] : flags_) other->excludes(flag);
+std::string OptionFlags::AnyGiven() const {
+  for (const auto& [name, flag] : flags_) {
+    if (flag->count() > 0) return flag->get_name();
+  }
+  return "";
 }
 
 void OptionFlags::Apply(const Visit& visit) const {
