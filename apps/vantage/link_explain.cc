@@ -15,7 +15,7 @@ namespace vantage::app {
 namespace {
 
 /// How far before and after the stretch alternatives may go.
-constexpr double kMargin_secs = 2;
+constexpr double kMargin_secs = 5;
 /// Pictures take room: no more frames than this at once.
 constexpr FrameIndex kMaxFrames = 10'000;
 
