@@ -25,12 +25,12 @@ PathInStretch Within(const LinkedPath& path, const Stretch& stretch,
   Cost cost = 0;
   for (std::int64_t frame = part.first_frame; frame < end; ++frame) {
     const CellIndex cell = path.cells[static_cast<std::size_t>(frame - path.first_frame)];
-    cost += network.graph().node_cost[network.NodeAt(frame, cell)];
+    cost += network.NodeCostAt(network.NodeAt(frame, cell));
     if (!part.cells.empty()) cost += network.MoveCost(part.cells.back(), cell);
     part.cells.push_back(cell);
   }
-  if (part.first_frame == path.first_frame) cost += network.graph().entry_cost;
-  if (end == path_end) cost += network.graph().exit_cost;
+  if (part.first_frame == path.first_frame) cost += network.network().entry_cost;
+  if (end == path_end) cost += network.network().exit_cost;
   part.cost = FromUnits(cost);
   return part;
 }

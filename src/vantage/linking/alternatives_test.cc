@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "vantage/base/test_support.h"
-#include "vantage/linking/layered_graph.h"
+#include "vantage/linking/node_cost.h"
 
 namespace vantage {
 namespace {

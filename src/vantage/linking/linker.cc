@@ -36,13 +36,7 @@ Status CheckSizes(const LinkingProblem& problem, const linking::Network& network
 Result<LinkingResult> Link(const LinkingProblem& problem, const LinkingOptions& options,
                            const RunControl& control) {
   VANTAGE_ASSIGN_OR_RETURN(const linking::Network network,
-                           linking::MakeNetwork({.columns = problem.columns,
-                                                 .rows = problem.rows,
-                                                 .access = problem.access,
-                                                 .obstacle = problem.obstacle,
-                                                 .cell_m = problem.cell_m,
-                                                 .frames_per_second = problem.frames_per_second},
-                                                options));
+                           linking::MakeNetwork(linking::GridOf(problem), options));
   VANTAGE_RETURN_IF_ERROR(CheckSizes(problem, network));
   linking::FlowSolver solver(network);
   for (std::int64_t frame = 0; frame < problem.frames; ++frame) {

@@ -79,6 +79,15 @@ void MakeMoves(std::optional<double> reach, double movement_cost, Network& netwo
 
 }  // namespace
 
+StreamGrid GridOf(const LinkingProblem& problem) {
+  return {.columns = problem.columns,
+          .rows = problem.rows,
+          .access = problem.access,
+          .obstacle = problem.obstacle,
+          .cell_m = problem.cell_m,
+          .frames_per_second = problem.frames_per_second};
+}
+
 Result<Network> MakeNetwork(const StreamGrid& grid, const LinkingOptions& options) {
   VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "linking"));
   VANTAGE_RETURN_IF_ERROR(CheckSizes(grid));

@@ -65,6 +65,8 @@ struct Network {
   std::vector<Cost> move_costs;  ///< see MoveCost
 };
 
+StreamGrid GridOf(const LinkingProblem& problem);
+
 /// Checks options and sizes.
 Result<Network> MakeNetwork(const StreamGrid& grid, const LinkingOptions& options);
 

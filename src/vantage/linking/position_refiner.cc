@@ -63,21 +63,26 @@ Result<PositionRefiner> PositionRefiner::Create(const OccupancyMaps& like,
   return PositionRefiner(like, options);
 }
 
-std::optional<Vector2d> PositionRefiner::Find(std::span<const float> q, CellIndex cell) const {
+std::optional<Vector2d> SupportedPosition(const GroundGrid& grid, std::span<const float> q,
+                                          CellIndex cell, double support) {
   double mass = 0;
   Vector2d sum = Vector2d::Zero();
-  for (int row = std::max(grid_.Row(cell) - 1, 0);
-       row <= std::min(grid_.Row(cell) + 1, grid_.rows - 1); ++row) {
-    for (int column = std::max(grid_.Column(cell) - 1, 0);
-         column <= std::min(grid_.Column(cell) + 1, grid_.columns - 1); ++column) {
-      const CellIndex neighbour = grid_.Index(column, row);
+  for (int row = std::max(grid.Row(cell) - 1, 0);
+       row <= std::min(grid.Row(cell) + 1, grid.rows - 1); ++row) {
+    for (int column = std::max(grid.Column(cell) - 1, 0);
+         column <= std::min(grid.Column(cell) + 1, grid.columns - 1); ++column) {
+      const CellIndex neighbour = grid.Index(column, row);
       const double weight = static_cast<double>(q[static_cast<std::size_t>(neighbour)]);
       mass += weight;
-      sum += weight * grid_.Center(neighbour);
+      sum += weight * grid.Center(neighbour);
     }
   }
-  if (mass < support_) return std::nullopt;
+  if (mass < support) return std::nullopt;
   return sum / mass;
+}
+
+std::optional<Vector2d> PositionRefiner::Find(std::span<const float> q, CellIndex cell) const {
+  return SupportedPosition(grid_, q, cell, support_);
 }
 
 std::optional<TrackPoint> PositionRefiner::PointAt(std::span<const SeenPosition> seen,

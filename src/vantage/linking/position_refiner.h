@@ -25,14 +25,18 @@ struct SeenPosition {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
 };
 
+/// Centre of mass of the probabilities `q` of the 3 x 3 cells around `cell`; none where they are
+/// less than `support` together.
+std::optional<Eigen::Vector2d> SupportedPosition(const GroundGrid& grid, std::span<const float> q,
+                                                 CellIndex cell, double support);
+
 class PositionRefiner {
  public:
   /// `like` gives grid, area and frame rate; its values are not used. Fails on options out of range
   /// and unless the frame rate is above 0.
   static Result<PositionRefiner> Create(const OccupancyMaps& like, const TrackOptions& options);
 
-  /// Centre of mass of the probabilities `q` of the 3 x 3 cells around `cell`; none where they do
-  /// not support a position.
+  /// SupportedPosition with the options' support.
   std::optional<Eigen::Vector2d> Find(std::span<const float> q, CellIndex cell) const;
 
   /// The path's position in `frame`, from those of its seen positions (by frame) that are known:

@@ -35,12 +35,16 @@ Result<ResidualNetwork> ResidualNetwork::Create(const LinkingProblem& problem,
     return Fail("linking: frames {} to {} are not in a problem of {} frames", first, last,
                 problem.frames);
   }
-  LinkingProblem part = problem;
-  part.frames = last - first + 1;
-  part.probability = problem.probability.subspan(static_cast<std::size_t>(first * cells),
-                                                 static_cast<std::size_t>(part.frames * cells));
   ResidualNetwork network;
-  VANTAGE_ASSIGN_OR_RETURN(network.graph_, MakeLayeredGraph(part, options));
+  VANTAGE_ASSIGN_OR_RETURN(network.network_, MakeNetwork(GridOf(problem), options));
+  network.cells_ = static_cast<Node>(cells);
+  network.frames_ = last - first + 1;
+  for (std::int64_t frame = first; frame <= last; ++frame) {
+    const auto map = problem.probability.subspan(static_cast<std::size_t>(frame * cells),
+                                                 static_cast<std::size_t>(cells));
+    VANTAGE_RETURN_IF_ERROR(CheckFrame(network.network_, map, frame));
+    for (const float p : map) network.node_cost_.push_back(network.network_.node_cost(p));
+  }
   network.first_ = first;
   network.from_beginning_ = first == 0;
   network.to_end_ = last == problem.frames - 1;
@@ -53,29 +57,28 @@ Result<ResidualNetwork> ResidualNetwork::Create(const LinkingProblem& problem,
 }
 
 bool ResidualNetwork::IsEntrance(Node node) const {
-  const Node cell = node % graph_.cells;
-  if (graph_.obstacle[cell] != 0) return false;
-  return graph_.access[cell] != 0 || (from_beginning_ && node < graph_.cells);
+  const Node cell = node % cells_;
+  if (network_.obstacle[cell] != 0) return false;
+  return network_.access[cell] != 0 || (from_beginning_ && node < cells_);
 }
 
 bool ResidualNetwork::IsExit(Node node) const {
-  const Node cell = node % graph_.cells;
-  if (graph_.obstacle[cell] != 0) return false;
-  return graph_.access[cell] != 0 || (to_end_ && node >= graph_.node_count() - graph_.cells);
+  const Node cell = node % cells_;
+  if (network_.obstacle[cell] != 0) return false;
+  return network_.access[cell] != 0 || (to_end_ && node >= node_count() - cells_);
 }
 
 Status ResidualNetwork::Occupy(const std::vector<LinkedPath>& paths) {
-  next_.assign(graph_.node_count(), kFree);
-  previous_.assign(graph_.node_count(), kFree);
+  next_.assign(node_count(), kFree);
+  previous_.assign(node_count(), kFree);
   for (const LinkedPath& path : paths) {
     const std::int64_t begin = std::max(path.first_frame, first_);
-    const std::int64_t end =
-        std::min(path.first_frame + std::ssize(path.cells), first_ + graph_.frames);
+    const std::int64_t end = std::min(path.first_frame + std::ssize(path.cells), first_ + frames_);
     for (std::int64_t frame = begin; frame < end; ++frame) {
       VANTAGE_RETURN_IF_ERROR(OccupyStep(path, frame - path.first_frame));
     }
   }
-  for (Node node = 0; node < graph_.node_count(); ++node) {
+  for (Node node = 0; node < node_count(); ++node) {
     if (IsEntrance(node)) entrances_.push_back(node);
     if (next_[node] == kEdge) lasts_.push_back(node);
   }
@@ -85,10 +88,10 @@ Status ResidualNetwork::Occupy(const std::vector<LinkedPath>& paths) {
 Status ResidualNetwork::OccupyStep(const LinkedPath& path, std::int64_t step) {
   const std::int64_t frame = path.first_frame + step;
   const CellIndex cell = path.cells[static_cast<std::size_t>(step)];
-  const auto cells = static_cast<CellIndex>(graph_.cells);
+  const auto cells = static_cast<CellIndex>(cells_);
   if (cell < 0 || cell >= cells) return NoSolution(frame, cell);
   const Node node = NodeAt(frame, cell);
-  if (next_[node] != kFree || graph_.obstacle[node % graph_.cells] != 0) {
+  if (next_[node] != kFree || network_.obstacle[node % cells_] != 0) {
     return NoSolution(frame, cell);
   }
   const bool begins = step == 0;
@@ -101,7 +104,7 @@ Status ResidualNetwork::OccupyStep(const LinkedPath& path, std::int64_t step) {
   next_[node] = kEdge;
   if (ends) return {};
   next_[node] = kBeyond;
-  if (frame + 1 == first_ + graph_.frames) return {};
+  if (frame + 1 == first_ + frames_) return {};
   const CellIndex to = path.cells[static_cast<std::size_t>(step + 1)];
   if (to < 0 || to >= cells || MoveCost(cell, to) < 0) return NoSolution(frame + 1, to);
   next_[node] = NodeAt(frame + 1, to);
@@ -109,28 +112,28 @@ Status ResidualNetwork::OccupyStep(const LinkedPath& path, std::int64_t step) {
 }
 
 Cost ResidualNetwork::MoveCost(CellIndex from, CellIndex to) const {
-  const int columns = to % graph_.columns - from % graph_.columns;
-  const int rows = to / graph_.columns - from / graph_.columns;
-  const auto move = std::find_if(graph_.moves.begin(), graph_.moves.end(), [&](const Move& m) {
+  const int columns = to % network_.columns - from % network_.columns;
+  const int rows = to / network_.columns - from / network_.columns;
+  const auto move = std::find_if(network_.moves.begin(), network_.moves.end(), [&](const Move& m) {
     return m.columns == columns && m.rows == rows;
   });
-  return move == graph_.moves.end() ? -1 : move->cost;
+  return move == network_.moves.end() ? -1 : move->cost;
 }
 
 template <class Visit>
 void ResidualNetwork::ForEachMove(Node node, const Visit& visit) const {
-  const Node first_of_next = (node / graph_.cells + 1) * graph_.cells;
-  if (first_of_next == graph_.node_count()) return;
-  const int column = static_cast<int>(node % graph_.cells) % graph_.columns;
-  const int row = static_cast<int>(node % graph_.cells) / graph_.columns;
-  for (const Move& move : graph_.moves) {
+  const Node first_of_next = (node / cells_ + 1) * cells_;
+  if (first_of_next == node_count()) return;
+  const int column = static_cast<int>(node % cells_) % network_.columns;
+  const int row = static_cast<int>(node % cells_) / network_.columns;
+  for (const Move& move : network_.moves) {
     const int to_column = column + move.columns;
     const int to_row = row + move.rows;
-    if (to_column < 0 || to_column >= graph_.columns || to_row < 0 || to_row >= graph_.rows) {
+    if (to_column < 0 || to_column >= network_.columns || to_row < 0 || to_row >= network_.rows) {
       continue;
     }
-    const auto cell = static_cast<Node>(to_column + to_row * graph_.columns);
-    if (graph_.obstacle[cell] == 0) visit(first_of_next + cell, move.cost);
+    const auto cell = static_cast<Node>(to_column + to_row * network_.columns);
+    if (network_.obstacle[cell] == 0) visit(first_of_next + cell, move.cost);
   }
 }
 
@@ -138,34 +141,34 @@ template <class Visit>
 void ResidualNetwork::ForEachArc(Vertex vertex, const Visit& visit) const {
   if (vertex == source()) {
     for (const Node node : entrances_) {
-      if (previous_[node] != kEdge) visit(In(node), graph_.entry_cost);
+      if (previous_[node] != kEdge) visit(In(node), network_.entry_cost);
     }
     if (path_count_ > 0) visit(sink(), Cost{0});
     return;
   }
   if (vertex == sink()) {
-    for (const Node node : lasts_) visit(Out(node), -graph_.exit_cost);
+    for (const Node node : lasts_) visit(Out(node), -network_.exit_cost);
     if (may_add_) visit(source(), Cost{0});
     return;
   }
   const Node node = vertex / 2;
-  const Cost cost = graph_.node_cost[node];
+  const Cost cost = node_cost_[node];
   const Node previous = previous_[node];
   if (vertex == In(node)) {
-    if (graph_.obstacle[node % graph_.cells] != 0) return;
+    if (network_.obstacle[node % cells_] != 0) return;
     if (previous == kFree) {
       visit(Out(node), cost);
     } else if (previous == kEdge) {
-      visit(source(), -graph_.entry_cost);
+      visit(source(), -network_.entry_cost);
     } else if (previous != kBeyond) {
-      visit(Out(previous), -MoveCost(static_cast<CellIndex>(previous % graph_.cells),
-                                     static_cast<CellIndex>(node % graph_.cells)));
+      visit(Out(previous), -MoveCost(static_cast<CellIndex>(previous % cells_),
+                                     static_cast<CellIndex>(node % cells_)));
     }
     return;
   }
   if (previous != kFree) visit(In(node), -cost);
-  if (IsExit(node) && next_[node] != kEdge) visit(sink(), graph_.exit_cost);
-  if (graph_.obstacle[node % graph_.cells] != 0) return;
+  if (IsExit(node) && next_[node] != kEdge) visit(sink(), network_.exit_cost);
+  if (network_.obstacle[node % cells_] != 0) return;
   ForEachMove(node, [&](Node to, Cost move_cost) {
     if (to != next_[node]) visit(In(to), move_cost);
   });
@@ -240,8 +243,8 @@ bool ResidualNetwork::Search(State start, State target, Cost bound, const Touche
 }
 
 std::optional<Cost> ResidualNetwork::MarginOfMove(Node from, Node to, Cost bound) {
-  const Cost move_cost = MoveCost(static_cast<CellIndex>(from % graph_.cells),
-                                  static_cast<CellIndex>(to % graph_.cells));
+  const Cost move_cost =
+      MoveCost(static_cast<CellIndex>(from % cells_), static_cast<CellIndex>(to % cells_));
   const Cost reversed = Reduced(In(to), Out(from), -move_cost);
   const auto never = [](Vertex) { return false; };
   if (!Search(Out(from), In(to), bound - reversed, never)) return std::nullopt;

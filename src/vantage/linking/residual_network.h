@@ -9,8 +9,8 @@
 
 #include "vantage/base/result.h"
 #include "vantage/base/run_control.h"
-#include "vantage/linking/layered_graph.h"
 #include "vantage/linking/linker.h"
+#include "vantage/linking/network.h"
 
 /// Internal to the linking module.
 
@@ -19,7 +19,7 @@ namespace vantage::linking {
 /// Residual network of an optimal set of paths over the frames [first, last] of a problem; what
 /// lies outside is fixed, the moves across the bounds too.
 ///
-/// Vertices: in(v) and out(v) of every node v = cell + (frame - first) * cells, joined by an arc of
+/// Vertices: in(v) and out(v) of every node v, joined by an arc of
 /// cost c(v); the source, whence paths begin, at the entry cost; the sink, where they end, at the
 /// exit cost; and an arc from the sink to the source of capacity max_paths, so that sets of paths
 /// are circulations. All other capacities are 1. An arc without flow is in the residual network as
@@ -28,6 +28,8 @@ namespace vantage::linking {
 class ResidualNetwork {
  public:
   using Vertex = std::uint32_t;
+  /// cell + (frame - first) * cells.
+  using Node = std::uint32_t;
 
   /// Fails when the sizes or options are wrong, when the paths are not a solution of the problem,
   /// and when they are not an optimal one.
@@ -36,10 +38,11 @@ class ResidualNetwork {
                                         const std::vector<LinkedPath>& paths, std::int64_t first,
                                         std::int64_t last, const RunControl& control);
 
-  const LayeredGraph& graph() const { return graph_; }
   Node NodeAt(std::int64_t frame, CellIndex cell) const {
-    return static_cast<Node>((frame - first_) * graph_.cells) + static_cast<Node>(cell);
+    return static_cast<Node>((frame - first_) * cells_) + static_cast<Node>(cell);
   }
+  const Network& network() const { return network_; }
+  Cost NodeCostAt(Node node) const { return node_cost_[node]; }
   Cost MoveCost(CellIndex from, CellIndex to) const;
 
   /// What the cheapest solution without the used move between these nodes costs more than the
@@ -81,10 +84,10 @@ class ResidualNetwork {
 
   Vertex In(Node node) const { return 2 * node; }
   Vertex Out(Node node) const { return 2 * node + 1; }
-  Vertex source() const { return 2 * graph_.node_count(); }
+  Vertex source() const { return 2 * node_count(); }
   Vertex sink() const { return source() + 1; }
   Vertex vertex_count() const { return source() + 2; }
-  std::int64_t FrameOf(Vertex vertex) const { return first_ + vertex / 2 / graph_.cells; }
+  std::int64_t FrameOf(Vertex vertex) const { return first_ + vertex / 2 / cells_; }
   bool IsEntrance(Node node) const;
   bool IsExit(Node node) const;
 
@@ -102,8 +105,13 @@ class ResidualNetwork {
     return cost + potential_[from] - potential_[to];
   }
 
-  LayeredGraph graph_;
+  Node node_count() const { return static_cast<Node>(node_cost_.size()); }
+
+  Network network_;
+  Node cells_ = 0;
+  std::vector<std::int32_t> node_cost_;  // by node
   std::int64_t first_ = 0;
+  std::int64_t frames_ = 0;
   bool from_beginning_ = false;  // the first frame is the problem's
   bool to_end_ = false;
   std::int64_t path_count_ = 0;

@@ -39,7 +39,7 @@ void VisitOptions(TrackOptions& o, OptionVisitor& v) {
 }
 
 bool IsSeen(const OccupancyMaps& maps, std::int64_t frame, CellIndex cell, double support) {
-  return Refine(maps, frame, cell, support).seen;
+  return linking::SupportedPosition(maps.grid, maps.Frame(frame), cell, support).has_value();
 }
 
 Result<Tracks> BuildTracks(const std::vector<LinkedPath>& paths, const OccupancyMaps& maps,
