@@ -30,7 +30,7 @@ struct StreamOptions {
 void VisitOptions(StreamOptions& o, OptionVisitor& v) {
   v.NumberOr({"lag", "s",
               "as a stream: positions of a frame are final once the maps of so many seconds more "
-              "are known; only these are in memory"},
+              "(at least one frame) are known; only these are in memory"},
              o.lag_secs, "none", Range::Between(0, 1e6));
 }
 

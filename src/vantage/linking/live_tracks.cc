@@ -30,9 +30,9 @@ Result<LiveTracks> LiveTracks::Create(const OccupancyMaps& like, const LinkingOp
   if (!(lag_secs >= 0 && lag_secs <= kMaxLagSecs)) {
     return Fail("the lag is {} s; it must be between 0 and {:.0f}", lag_secs, kMaxLagSecs);
   }
-  // Capped against absurd frame rates.
+  // Bounded against absurd frame rates.
   const auto lag_frames = static_cast<std::int64_t>(
-      std::llround(std::min(lag_secs * like.frames_per_second, kMaxLagFrames)));
+      std::llround(std::clamp(lag_secs * like.frames_per_second, 1.0, kMaxLagFrames)));
   const std::vector<std::uint8_t> access = AccessCells(like, linking.access, doors);
   const std::vector<std::uint8_t> obstacle = CellsIn(like.grid, obstacles);
   VANTAGE_ASSIGN_OR_RETURN(StreamLinker linker,

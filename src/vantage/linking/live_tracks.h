@@ -49,8 +49,8 @@ struct LiveReport {
 class LiveTracks {
  public:
   /// `like` gives grid, area, visibility, frame rate and the number of the first frame; its values
-  /// are not used. 0 <= lag_secs <= 1e6, rounded to whole frames. Fails as LinkMaps does, and on
-  /// linking.max_paths > 0.
+  /// are not used. 0 <= lag_secs <= 1e6, rounded to whole frames, at least one. Fails as LinkMaps
+  /// does, and on linking.max_paths > 0.
   static Result<LiveTracks> Create(const OccupancyMaps& like, const LinkingOptions& linking,
                                    const TrackOptions& tracks, double lag_secs,
                                    std::span<const Polygon> doors = {},
