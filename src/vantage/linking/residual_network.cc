@@ -226,7 +226,8 @@ bool ResidualNetwork::Search(State start, State target, Cost bound, const Touche
   };
   reach(start, 0, start);
   while (!queue.empty()) {
-    const auto [distance, state] = queue.top();
+    const Cost distance = queue.top().first;
+    const State state = queue.top().second;
     queue.pop();
     if (state == target) return true;
     if (distance > label_[state].distance) continue;
