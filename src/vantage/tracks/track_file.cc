@@ -28,6 +28,7 @@ constexpr std::int64_t kLastId = std::int64_t{1} << 53;  // whole numbers are ex
 /// One line of a file, cut at its commas.
 struct Row {
   std::string place;  // file:line
+  std::size_t number = 0;
   std::vector<std::string_view> fields;
 };
 
@@ -71,8 +72,9 @@ Result<std::vector<Row>> Rows(const fs::path& path, std::string_view text) {
   std::vector<Row> rows;
   VANTAGE_RETURN_IF_ERROR(ForEachLine(text, [&](std::string_view line, std::size_t number) {
     if (!line.empty()) {
-      rows.push_back(
-          {.place = fmt::format("{}:{}", path.string(), number), .fields = Fields(line)});
+      rows.push_back({.place = fmt::format("{}:{}", path.string(), number),
+                      .number = number,
+                      .fields = Fields(line)});
     }
     return Status();
   }));
@@ -94,25 +96,34 @@ template <class Point>
 class Collector {
  public:
   Status Add(const Row& row, std::int64_t id, const Point& point) {
-    const auto [known, added] = points_[id].emplace(point.frame, point);
+    const auto [known, added] = points_[id].emplace(point.frame, Read{point, row.number});
     if (added) return {};
-    return Fail("{}: id {} comes twice in this frame; ids must be unique within a frame", row.place,
-                id);
+    return Fail(
+        "{}: id {} comes twice in this frame, first in line {}; ids must be unique within a "
+        "frame",
+        row.place, id, known->second.line);
   }
 
   template <class AnyTrack>
-  std::vector<AnyTrack> Finish() const {
+  std::vector<AnyTrack> Finish(TrackLines* lines) const {
     std::vector<AnyTrack> tracks;
     for (const auto& [id, points] : points_) {
       AnyTrack& track = tracks.emplace_back();
       track.id = TrackId{id};
-      for (const auto& [frame, point] : points) track.points.push_back(point);
+      for (const auto& [frame, read] : points) {
+        track.points.push_back(read.point);
+        if (lines != nullptr) lines->emplace(std::pair(track.id, frame), read.line);
+      }
     }
     return tracks;
   }
 
  private:
-  std::map<std::int64_t, std::map<FrameIndex, Point>> points_;
+  struct Read {
+    Point point;
+    std::size_t line;
+  };
+  std::map<std::int64_t, std::map<FrameIndex, Read>> points_;
 };
 
 struct CsvColumns {
@@ -142,7 +153,7 @@ Result<CsvColumns> ReadHeader(const Row& header) {
   return columns;
 }
 
-Result<Tracks> ReadCsv(std::span<const Row> rows) {
+Result<Tracks> ReadCsv(std::span<const Row> rows, TrackLines* lines) {
   VANTAGE_ASSIGN_OR_RETURN(const CsvColumns columns, ReadHeader(rows.front()));
   Collector<TrackPoint> collector;
   for (const Row& row : rows.subspan(1)) {
@@ -158,10 +169,10 @@ Result<Tracks> ReadCsv(std::span<const Row> rows) {
     }
     VANTAGE_RETURN_IF_ERROR(collector.Add(row, id, point));
   }
-  return collector.Finish<Track>();
+  return collector.Finish<Track>(lines);
 }
 
-Result<Tracks> ReadMotChallenge(std::span<const Row> rows) {
+Result<Tracks> ReadMotChallenge(std::span<const Row> rows, TrackLines* lines) {
   Collector<TrackPoint> collector;
   for (const Row& row : rows) {
     TrackPoint point;
@@ -177,18 +188,18 @@ Result<Tracks> ReadMotChallenge(std::span<const Row> rows) {
     }
     VANTAGE_RETURN_IF_ERROR(collector.Add(row, id, point));
   }
-  return collector.Finish<Track>();
+  return collector.Finish<Track>(lines);
 }
 
 }  // namespace
 
-Result<Tracks> ReadTracks(const fs::path& path) {
+Result<Tracks> ReadTracks(const fs::path& path, TrackLines* lines) {
   VANTAGE_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
   VANTAGE_ASSIGN_OR_RETURN(const std::vector<Row> rows, Rows(path, text));
-  return IsHeader(rows.front()) ? ReadCsv(rows) : ReadMotChallenge(rows);
+  return IsHeader(rows.front()) ? ReadCsv(rows, lines) : ReadMotChallenge(rows, lines);
 }
 
-Result<BoxTracks> ReadBoxTracks(const fs::path& path) {
+Result<BoxTracks> ReadBoxTracks(const fs::path& path, TrackLines* lines) {
   VANTAGE_ASSIGN_OR_RETURN(const std::string text, ReadTextFile(path));
   VANTAGE_ASSIGN_OR_RETURN(const std::vector<Row> rows, Rows(path, text));
   if (IsHeader(rows.front())) {
@@ -214,7 +225,7 @@ Result<BoxTracks> ReadBoxTracks(const fs::path& path) {
     }
     VANTAGE_RETURN_IF_ERROR(collector.Add(row, id, point));
   }
-  return collector.Finish<BoxTrack>();
+  return collector.Finish<BoxTrack>(lines);
 }
 
 TrackWriter::TrackWriter(StagedFile staged, double frames_per_second)

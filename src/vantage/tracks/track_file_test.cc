@@ -18,6 +18,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 using ::testing::SizeIs;
 
 class TrackFile : public ::testing::Test {
@@ -90,7 +91,8 @@ TEST_F(TrackFile, BoxesOfMotChallenge) {
 
 TEST_F(TrackFile, ErrorsNameTheLine) {
   const std::string header = "frame,id,x,y\n";
-  EXPECT_THAT(ErrorOf(header + "0,1,2,3\n0,1,2,3\n"), HasSubstr("tracks.csv:3: id 1 comes twice"));
+  EXPECT_THAT(ErrorOf(header + "0,1,2,3\n0,1,2,3\n"),
+              HasSubstr("tracks.csv:3: id 1 comes twice in this frame, first in line 2;"));
   EXPECT_THAT(ErrorOf(header + "\n-1,1,2,3\n"), HasSubstr(":3: frame is -1"));
   EXPECT_THAT(ErrorOf(header + "0,1,nan,3\n"), HasSubstr(":2: x is 'nan'"));
   EXPECT_THAT(ErrorOf(header + "0,1,2,inf\n"), HasSubstr(":2: y is 'inf'"));
@@ -108,6 +110,14 @@ TEST_F(TrackFile, ErrorsNameTheLine) {
   EXPECT_THAT(ErrorOf(""), HasSubstr("is empty"));
   EXPECT_THAT(ErrorOf(" \n\n"), HasSubstr("is empty"));
   EXPECT_THAT(testing::MessageOf(ReadTracks(folder_ / "none.csv")), HasSubstr("no such file"));
+}
+
+TEST_F(TrackFile, SaysInWhichLineAPositionStands) {
+  ASSERT_TRUE(WriteTextFile(path_, "frame,id,x,y\n\n8,3,4,2\n7,3,4,2\n8,1,0,0\n"));
+  TrackLines lines;
+  ASSERT_TRUE(ReadTracks(path_, &lines));
+  EXPECT_THAT(lines, ElementsAre(Pair(Pair(TrackId{1}, 8), 5), Pair(Pair(TrackId{3}, 7), 4),
+                                 Pair(Pair(TrackId{3}, 8), 3)));
 }
 
 TEST_F(TrackFile, NothingIsWrittenOfTracksThatCannotBe) {
