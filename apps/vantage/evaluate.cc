@@ -14,6 +14,7 @@
 #include "command.h"
 #include "evaluate_masks.h"
 #include "vantage/metrics/clear_mot.h"
+#include "vantage/metrics/track_check.h"
 #include "vantage/scene/scene.h"
 #include "vantage/tracks/track_file.h"
 

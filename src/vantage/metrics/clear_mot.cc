@@ -3,22 +3,23 @@
 #include "vantage/metrics/clear_mot.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
+#include "vantage/metrics/comparison.h"
 #include "vantage/metrics/matching.h"
 
 namespace vantage {
 namespace {
 
 using metrics::FramePairs;
+using metrics::PointOf;
 
-template <class AnyTrack>
-using PointOf = typename decltype(AnyTrack::points)::value_type;
+constexpr std::size_t kMostPerFrame = 2000;  // an assignment takes their third power
+constexpr double kMostPairsOfTracks = 2e7;   // 160 MB a table
 
 /// Which frames count, from those with truth.
 class FrameSelection {
@@ -56,27 +57,28 @@ struct Present {
 
 /// Sorts the points that count into frames and numbers the tracks that have any.
 template <class AnyTrack, class Keep>
-std::size_t Sort(const std::vector<AnyTrack>& tracks, const FrameSelection& selection,
-                 const Keep& keep, std::map<FrameIndex, Present<PointOf<AnyTrack>>>& frames) {
-  std::size_t used = 0;
+std::vector<ObjectMeasures> Sort(const std::vector<AnyTrack>& tracks,
+                                 const FrameSelection& selection, const Keep& keep,
+                                 std::map<FrameIndex, Present<PointOf<AnyTrack>>>& frames) {
+  std::vector<ObjectMeasures> objects;
   for (const AnyTrack& track : tracks) {
-    bool counts = false;
+    ObjectMeasures object{.id = track.id};
     for (const auto& point : track.points) {
       if (!selection.Contains(point.frame) || !keep(point)) continue;
-      counts = true;
-      frames[point.frame].tracks.push_back(used);
+      if (object.positions++ == 0) object.first_frame = point.frame;
+      object.last_frame = point.frame;
+      frames[point.frame].tracks.push_back(objects.size());
       frames[point.frame].points.push_back(&point);
     }
-    if (counts) ++used;
+    if (object.positions > 0) objects.push_back(std::move(object));
   }
-  return used;
+  return objects;
 }
 
-template <class AnyTrack, class Keep, class Distance>
-Result<TrackMeasures> Evaluate(const std::vector<AnyTrack>& truth,
-                               const std::vector<AnyTrack>& results, bool truth_frames_only,
-                               double largest_distance, const Keep& keep,
-                               const Distance& distance) {
+template <class AnyTrack, class Comparison, class Keep>
+Result<TrackAnalysis> Analyze(const std::vector<AnyTrack>& truth,
+                              const std::vector<AnyTrack>& results, bool truth_frames_only,
+                              const Comparison& comparison, const Keep& keep) {
   std::set<FrameIndex> with_truth;
   for (const AnyTrack& track : truth) {
     for (const auto& point : track.points) with_truth.insert(point.frame);
@@ -84,59 +86,52 @@ Result<TrackMeasures> Evaluate(const std::vector<AnyTrack>& truth,
   if (with_truth.empty()) return Fail("the truth is empty; there is nothing to evaluate against");
   const FrameSelection selection(std::move(with_truth), truth_frames_only);
 
+  TrackAnalysis analysis;
   std::map<FrameIndex, Present<PointOf<AnyTrack>>> truth_frames, result_frames;
-  const std::size_t truth_tracks = Sort(truth, selection, keep, truth_frames);
-  const std::size_t result_tracks = Sort(results, selection, keep, result_frames);
-  if (truth_tracks == 0) {
+  analysis.truth = Sort(truth, selection, keep, truth_frames);
+  analysis.results = Sort(results, selection, keep, result_frames);
+  if (analysis.truth.empty()) {
     return Fail("the truth has no position inside the area; check the area and the units (metres)");
+  }
+  if (static_cast<double>(analysis.truth.size()) * static_cast<double>(analysis.results.size()) >
+      kMostPairsOfTracks) {
+    return Fail(
+        "{} tracks of truth and {} of results make more than {} pairs, too many to compare; cut "
+        "the recording into parts",
+        analysis.truth.size(), analysis.results.size(), kMostPairsOfTracks);
   }
   for (const auto& entry : result_frames) truth_frames[entry.first];  // frames with results only
 
   std::vector<FramePairs> frames;
   for (const auto& [frame, marked] : truth_frames) {
     const Present<PointOf<AnyTrack>>& found = result_frames[frame];
+    if (std::max(marked.tracks.size(), found.tracks.size()) > kMostPerFrame) {
+      return Fail("frame {} has {} of truth and {} of results; at most {} each can be compared",
+                  frame, marked.tracks.size(), found.tracks.size(), kMostPerFrame);
+    }
     FramePairs& pairs = frames.emplace_back();
+    pairs.frame = frame;
     pairs.truth = marked.tracks;
     pairs.results = found.tracks;
-    pairs.distance = CostMatrix(pairs.truth.size(), pairs.results.size());
+    pairs.distance = pairs.similarity = CostMatrix(pairs.truth.size(), pairs.results.size());
     for (std::size_t row = 0; row < pairs.truth.size(); ++row) {
       for (std::size_t column = 0; column < pairs.results.size(); ++column) {
-        pairs.distance(row, column) = distance(*marked.points[row], *found.points[column]);
+        const auto& a = *marked.points[row];
+        const auto& b = *found.points[column];
+        pairs.distance(row, column) = comparison.Distance(a, b);
+        pairs.similarity(row, column) = comparison.Similarity(a, b);
       }
     }
   }
 
-  TrackMeasures measures;
-  measures.frames = selection.count();
-  measures.truth_tracks = static_cast<std::int64_t>(truth_tracks);
-  measures.result_tracks = static_cast<std::int64_t>(result_tracks);
-  metrics::MeasureClearMot(frames, truth_tracks, measures);
-  metrics::MeasureIdentity(frames, truth_tracks, result_tracks, measures);
-  metrics::MeasureDetection(frames, largest_distance, measures);
-  return measures;
-}
-
-double IntersectionOverUnion(const BoxPoint& a, const BoxPoint& b) {
-  const double width =
-      std::min(a.left_px + a.width_px, b.left_px + b.width_px) - std::max(a.left_px, b.left_px);
-  const double height =
-      std::min(a.top_px + a.height_px, b.top_px + b.height_px) - std::max(a.top_px, b.top_px);
-  if (width <= 0 || height <= 0) return 0;
-  const double shared = width * height;
-  return shared / (a.width_px * a.height_px + b.width_px * b.height_px - shared);
-}
-
-double MedianDistanceFromOrigin(const Tracks& tracks) {
-  std::vector<double> distances;
-  for (const Track& track : tracks) {
-    for (const TrackPoint& point : track.points) {
-      distances.push_back(std::hypot(point.x_m, point.y_m));
-    }
-  }
-  if (distances.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = distances.begin() + std::ssize(distances) / 2;
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  analysis.measures.frames = selection.count();
+  analysis.measures.truth_tracks = std::ssize(analysis.truth);
+  analysis.measures.result_tracks = std::ssize(analysis.results);
+  metrics::MeasureClearMot(frames, comparison.LargestDistance(), analysis);
+  metrics::MeasureIdentity(frames, analysis);
+  metrics::MeasureDetection(frames, comparison.LargestDistance(), analysis);
+  metrics::MeasureHota(frames, analysis);
+  return analysis;
 }
 
 }  // namespace
@@ -150,33 +145,33 @@ void VisitOptions(EvaluationOptions& options, OptionVisitor& visitor) {
                options.truth_frames_only);
 }
 
+Result<TrackAnalysis> AnalyzeTracks(const Tracks& truth, const Tracks& results,
+                                    const EvaluationOptions& options, const Polygon* area) {
+  VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "evaluation"));
+  return Analyze(truth, results, options.truth_frames_only,
+                 metrics::GroundComparison{options.threshold_m}, [&](const TrackPoint& point) {
+                   return area == nullptr || area->Contains({point.x_m, point.y_m});
+                 });
+}
+
+Result<TrackAnalysis> AnalyzeBoxes(const BoxTracks& truth, const BoxTracks& results,
+                                   const EvaluationOptions& options) {
+  VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "evaluation"));
+  return Analyze(truth, results, options.truth_frames_only, metrics::BoxComparison{options.min_iou},
+                 [](const BoxPoint&) { return true; });
+}
+
 Result<TrackMeasures> EvaluateTracks(const Tracks& truth, const Tracks& results,
                                      const EvaluationOptions& options, const Polygon* area) {
-  VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "evaluation"));
-  return Evaluate(
-      truth, results, options.truth_frames_only, options.threshold_m,
-      [&](const TrackPoint& point) {
-        return area == nullptr || area->Contains({point.x_m, point.y_m});
-      },
-      [&](const TrackPoint& a, const TrackPoint& b) {
-        const double distance_m = std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
-        return distance_m < options.threshold_m ? distance_m : CostMatrix::kForbidden;
-      });
+  VANTAGE_ASSIGN_OR_RETURN(const TrackAnalysis analysis,
+                           AnalyzeTracks(truth, results, options, area));
+  return analysis.measures;
 }
 
 Result<TrackMeasures> EvaluateBoxes(const BoxTracks& truth, const BoxTracks& results,
                                     const EvaluationOptions& options) {
-  VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "evaluation"));
-  return Evaluate(
-      truth, results, options.truth_frames_only, 1, [](const BoxPoint&) { return true; },
-      [&](const BoxPoint& a, const BoxPoint& b) {
-        const double iou = IntersectionOverUnion(a, b);
-        return iou >= options.min_iou ? 1 - iou : CostMatrix::kForbidden;
-      });
-}
-
-double ScaleOfResults(const Tracks& truth, const Tracks& results) {
-  return MedianDistanceFromOrigin(results) / MedianDistanceFromOrigin(truth);
+  VANTAGE_ASSIGN_OR_RETURN(const TrackAnalysis analysis, AnalyzeBoxes(truth, results, options));
+  return analysis.measures;
 }
 
 }  // namespace vantage

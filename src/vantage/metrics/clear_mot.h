@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
+#include "vantage/base/ids.h"
 #include "vantage/base/options.h"
 #include "vantage/base/result.h"
 #include "vantage/geometry/polygon.h"
@@ -26,8 +29,9 @@ struct EvaluationOptions {
 };
 void VisitOptions(EvaluationOptions& options, OptionVisitor& visitor);
 
-/// CLEAR MOT (Bernardin and Stiefelhagen, 2008), identity measures (Ristani et al., 2016) and
-/// detection measures (Kasturi et al., 2009). Ratios whose denominator is 0 are NaN.
+/// CLEAR MOT (Bernardin and Stiefelhagen, 2008), identity measures (Ristani et al., 2016),
+/// detection measures (Kasturi et al., 2009) and HOTA (Luiten et al., 2021). Ratios whose
+/// denominator is 0 are NaN.
 struct TrackMeasures {
   std::int64_t frames = 0;        ///< that count
   std::int64_t truth_tracks = 0;  ///< with at least one position that counts; also below
@@ -44,8 +48,12 @@ struct TrackMeasures {
   std::int64_t partially_tracked = 0;  ///< the others
 
   double mota = 0;  ///< 1 - (FN + FP + IDSW) / GT
-  /// Mean over matches of the distance in metres, in pictures of 1 - IoU: smaller is better.
+  /// Two measures go by the name of MOTP. This is the first authors': mean over matches of the
+  /// distance in metres, in pictures of 1 - IoU; smaller is better.
   double motp = 0;
+  /// And this MOTChallenge's: mean over matches of 1 - distance / threshold, in pictures of IoU;
+  /// larger is better.
+  double motp_similarity = 0;
   double precision = 0;  ///< TP / (TP + FP)
   double recall = 0;     ///< TP / GT
 
@@ -60,24 +68,89 @@ struct TrackMeasures {
   double moda = 0;  ///< 1 - (FN + FP) / GT
   /// Mean over matches of 1 - distance / threshold, in pictures of IoU: larger is better.
   double modp = 0;
+
+  // Means over the thresholds of TrackAnalysis::hota.
+  double hota = 0;
+  double deta = 0;
+  double assa = 0;
+  double loca = 0;  ///< over the thresholds with a match
+};
+
+/// HOTA at one threshold `alpha` on similarity: IoU in pictures; on the ground 1 - distance / (2
+/// threshold), at least 0, so that 0.5 stands for the threshold in both.
+struct HotaAtThreshold {
+  double alpha = 0;
+  double hota = 0;  ///< sqrt(DetA AssA)
+  double deta = 0;  ///< TP / (TP + FN + FP)
+  /// Mean over the TP of the overlap of their two tracks, TPA / (TPA + FNA + FPA); 0 without TP.
+  double assa = 0;
+  double loca = 0;  ///< mean similarity of the TP
+};
+
+/// A stretch of frames in which a truth track is there and keeps one match, or has none.
+struct MatchSpan {
+  FrameIndex first_frame = 0;
+  FrameIndex last_frame = 0;
+  std::optional<TrackId> result;
+  friend bool operator==(const MatchSpan&, const MatchSpan&) = default;
+};
+
+/// What became of one track of the truth or of the results, in frames and places that count.
+struct ObjectMeasures {
+  TrackId id{};
+  FrameIndex first_frame = 0;
+  FrameIndex last_frame = 0;
+  std::int64_t positions = 0;
+  std::int64_t matches = 0;   ///< the other positions are misses, of a result false positives
+  std::int64_t partners = 0;  ///< tracks of the other side that it was ever matched to
+  double distance_sum = 0;    ///< of the matches, as in TrackMeasures::motp
+  /// The track of the other side that IDF1 gives it, if they meet at all, and where the two match.
+  std::optional<TrackId> identity = {};
+  std::int64_t id_true_positives = 0;
+
+  // Of truth only.
+  std::int64_t switches = 0;
+  std::int64_t fragmentations = 0;
+  std::vector<MatchSpan> spans = {};
+};
+
+/// One frame that counts.
+struct FrameMeasures {
+  FrameIndex frame = 0;
+  std::int64_t truth = 0;
+  std::int64_t results = 0;
+  std::int64_t matches = 0;  ///< truth - matches are misses, results - matches false positives
+  std::int64_t switches = 0;
+  double distance_sum = 0;  ///< of the matches, as in TrackMeasures::motp
+};
+
+/// All figures, and where they come from.
+struct TrackAnalysis {
+  TrackMeasures measures;
+  std::vector<HotaAtThreshold> hota;           ///< alpha = 0.05, 0.10 ... 0.95
+  std::vector<ObjectMeasures> truth, results;  ///< in ascending order of id
+  std::vector<FrameMeasures> frames;  ///< ascending; those with neither truth nor results left out
 };
 
 /// Compares positions on the ground. With an `area` only truth and results inside it count; a
 /// person who is inside in one and just outside in the other is therefore an error. In every frame,
 /// pairs matched in an earlier one stay matched as long as they are near enough; the others are
 /// assigned anew so that there are as many matches as can be, with the smallest sum of distances.
-/// Fails on options out of range and when no truth counts.
+/// Fails on options out of range, when no truth counts, and beyond 2000 people in a frame or 2e7
+/// pairs of a truth and a result track.
+Result<TrackAnalysis> AnalyzeTracks(const Tracks& truth, const Tracks& results,
+                                    const EvaluationOptions& options,
+                                    const Polygon* area = nullptr);
+
+/// The same for boxes in pictures by their overlap.
+Result<TrackAnalysis> AnalyzeBoxes(const BoxTracks& truth, const BoxTracks& results,
+                                   const EvaluationOptions& options);
+
+/// The figures alone.
 Result<TrackMeasures> EvaluateTracks(const Tracks& truth, const Tracks& results,
                                      const EvaluationOptions& options,
                                      const Polygon* area = nullptr);
-
-/// The same for boxes in pictures by their overlap.
 Result<TrackMeasures> EvaluateBoxes(const BoxTracks& truth, const BoxTracks& results,
                                     const EvaluationOptions& options);
-
-/// How much larger the coordinates of the results are than those of the truth (medians of distances
-/// from the origin): far from 1 when one is in centimetres or frames of reference differ. NaN when
-/// either has no position.
-double ScaleOfResults(const Tracks& truth, const Tracks& results);
 
 }  // namespace vantage

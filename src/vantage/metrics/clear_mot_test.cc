@@ -6,29 +6,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <initializer_list>
 #include <random>
 
 #include "vantage/base/test_support.h"
+#include "vantage/metrics/test_tracks.h"
 #include "vantage/tracks/track_file.h"
 
 namespace vantage {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A track on the x axis from `first` on; NaN: not there in that frame.
-constexpr double kGone = std::numeric_limits<double>::quiet_NaN();
-Track Walk(std::int64_t id, std::initializer_list<double> xs, FrameIndex first = 0,
-           FrameIndex step = 1) {
-  Track track{.id = TrackId{id}, .points = {}};
-  FrameIndex frame = first;
-  for (const double x : xs) {
-    if (!std::isnan(x)) track.points.push_back({frame, x, 0, false});
-    frame += step;
-  }
-  return track;
-}
+using testing::kGone;
+using testing::Walk;
 
 TrackMeasures Measure(const Tracks& truth, const Tracks& results,
                       const EvaluationOptions& options = {}, const Polygon* area = nullptr) {
@@ -51,9 +42,11 @@ TEST(ClearMot, TruthAgainstItselfIsPerfect) {
   EXPECT_EQ(m.misses + m.false_positives + m.switches + m.fragmentations, 0);
   EXPECT_EQ(m.matches, m.truth_positions);
   EXPECT_EQ(m.mostly_tracked, 6);
-  for (const double one : {m.mota, m.precision, m.recall, m.idf1, m.idp, m.idr, m.moda, m.modp}) {
+  for (const double one :
+       {m.mota, m.motp_similarity, m.precision, m.recall, m.idf1, m.idp, m.idr, m.moda, m.modp}) {
     EXPECT_EQ(one, 1);
   }
+  for (const double one : {m.hota, m.deta, m.assa, m.loca}) EXPECT_DOUBLE_EQ(one, 1);
   EXPECT_EQ(m.motp, 0);
 }
 
@@ -92,6 +85,46 @@ TEST(ClearMot, MatchesAreCarriedOverWhileTheyHold) {
   const TrackMeasures broken = Measure(truth, {Walk(1, {0, 1.0, 1.0}), Walk(2, {5, 0.1, 0.1})});
   EXPECT_EQ(broken.switches, 1);
   EXPECT_DOUBLE_EQ(broken.motp, (0 + 0.1 + 0.1) / 3);
+}
+
+TEST(ClearMot, LooseThresholdsDoNotLoseCarriedMatches) {
+  // Programs that carry a match over by a bonus on its score lose it where the threshold is larger
+  // than the bonus. Result 2 is on the spot, result 1, matched before, 9 km away.
+  const Tracks truth = {Walk(1, {0, 0, 0})};
+  const Tracks results = {Walk(1, {0, 9000, 9000}), Walk(2, {kGone, 0, 0})};
+  const TrackMeasures m = Measure(truth, results, {.threshold_m = 10'000});
+  EXPECT_EQ(m.switches, 0);
+  EXPECT_DOUBLE_EQ(m.motp, 6000);
+
+  const auto box = [](std::int64_t id, double left_first, double left_then) {
+    return BoxTrack{TrackId{id}, {{0, left_first, 0, 10, 10}, {1, left_then, 0, 10, 10}}};
+  };
+  const Result<TrackMeasures> boxes =
+      EvaluateBoxes({box(1, 0, 0)}, {box(1, 0, 9.9), box(2, 500, 0)}, {.min_iou = 1e-6});
+  ASSERT_TRUE(boxes);
+  EXPECT_EQ(boxes->switches, 0);
+}
+
+TEST(ClearMot, FramesWithoutAnyResultCount) {
+  // Two people in 10 frames, both found in the first 4, nobody in the others. 12 of 20 are missed:
+  // MODA = MOTA = 1 - 12 / 20, and not 1 as over the frames with results. IDF1 = 2 * 8 / (20 + 8).
+  const Tracks truth = {Walk(1, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}),
+                        Walk(2, {9, 9, 9, 9, 9, 9, 9, 9, 9, 9})};
+  const Tracks results = {Walk(1, {0, 0, 0, 0}), Walk(2, {9, 9, 9, 9})};
+  const TrackMeasures m = Measure(truth, results);
+  EXPECT_EQ(m.frames, 10);
+  EXPECT_EQ(m.misses, 12);
+  EXPECT_DOUBLE_EQ(m.moda, 0.4);
+  EXPECT_DOUBLE_EQ(m.mota, 0.4);
+  EXPECT_DOUBLE_EQ(m.idf1, 16.0 / 28);
+  EXPECT_DOUBLE_EQ(m.modp, 1);
+}
+
+TEST(ClearMot, BothDefinitionsOfMotp) {
+  // 0.5 m and 1 m away, at a threshold of 2 m: 0.75 m, or a similarity of (0.75 + 0.5) / 2.
+  const TrackMeasures m = Measure({Walk(1, {0, 0})}, {Walk(1, {0.5, 1})}, {.threshold_m = 2});
+  EXPECT_DOUBLE_EQ(m.motp, 0.75);
+  EXPECT_DOUBLE_EQ(m.motp_similarity, 0.625);
 }
 
 TEST(ClearMot, MatchesAreRememberedAcrossGaps) {
@@ -194,6 +227,50 @@ TEST(ClearMot, RatiosOfNothingAreNaN) {
   EXPECT_TRUE(std::isnan(m.motp));
   EXPECT_TRUE(std::isnan(m.precision));
   EXPECT_TRUE(std::isnan(m.modp));
+  EXPECT_EQ(m.hota, 0);
+  EXPECT_TRUE(std::isnan(m.loca));
+}
+
+TEST(ClearMot, ObjectsAndFramesByHand) {
+  // Person 1 goes from result 1 over a miss to result 2, is away in frame 4, and comes back; person
+  // 2 is never found. Result 3 finds nobody.
+  const Tracks truth = {Walk(1, {0, 0, 0, 0, kGone, 0}), Walk(2, {50, 50, 50, 50, 50, 50})};
+  const Tracks results = {Walk(1, {0.5, 0.25}), Walk(2, {kGone, kGone, kGone, 0, kGone, 0}),
+                          Walk(3, {kGone, 9})};
+  const Result<TrackAnalysis> analysis = AnalyzeTracks(truth, results, {});
+  ASSERT_TRUE(analysis) << testing::MessageOf(analysis);
+  ASSERT_EQ(analysis->truth.size(), 2u);
+  const ObjectMeasures& first = analysis->truth[0];
+  EXPECT_EQ(first.id, TrackId{1});
+  EXPECT_EQ(first.first_frame, 0);
+  EXPECT_EQ(first.last_frame, 5);
+  EXPECT_EQ(first.positions, 5);
+  EXPECT_EQ(first.matches, 4);
+  EXPECT_EQ(first.partners, 2);
+  EXPECT_EQ(first.switches, 1);
+  EXPECT_EQ(first.fragmentations, 1);
+  EXPECT_DOUBLE_EQ(first.distance_sum, 0.75);
+  EXPECT_EQ(first.id_true_positives, 2);
+  EXPECT_THAT(first.spans, ElementsAre(MatchSpan{0, 1, TrackId{1}}, MatchSpan{2, 2, std::nullopt},
+                                       MatchSpan{3, 3, TrackId{2}}, MatchSpan{5, 5, TrackId{2}}));
+  const ObjectMeasures& second = analysis->truth[1];
+  EXPECT_EQ(second.matches, 0);
+  EXPECT_FALSE(second.identity);
+  EXPECT_THAT(second.spans, ElementsAre(MatchSpan{0, 5, std::nullopt}));
+
+  ASSERT_EQ(analysis->results.size(), 3u);
+  EXPECT_EQ(analysis->results[0].matches, 2);
+  EXPECT_EQ(analysis->results[0].partners, 1);
+  EXPECT_EQ(analysis->results[2].matches, 0);
+  EXPECT_EQ(analysis->results[2].first_frame, 1);
+
+  ASSERT_EQ(analysis->frames.size(), 6u);
+  const FrameMeasures& frame = analysis->frames[1];
+  EXPECT_EQ(frame.truth, 2);
+  EXPECT_EQ(frame.results, 2);
+  EXPECT_EQ(frame.matches, 1);
+  EXPECT_DOUBLE_EQ(frame.distance_sum, 0.25);
+  EXPECT_EQ(analysis->frames[3].switches, 1);
 }
 
 TEST(ClearMot, RefusesWhatCannotBeMeasured) {
@@ -203,13 +280,13 @@ TEST(ClearMot, RefusesWhatCannotBeMeasured) {
   const Result<Polygon> area = Polygon::Rectangle({50, 50}, {60, 60});
   EXPECT_THAT(testing::MessageOf(EvaluateTracks({Walk(1, {0})}, {}, {}, &*area)),
               HasSubstr("no position inside the area"));
-}
-
-TEST(ClearMot, SeesWrongUnits) {
-  const Tracks metres = {Walk(1, {2, 3, 4})};
-  const Tracks centimetres = {Walk(1, {200, 300, 400})};
-  EXPECT_DOUBLE_EQ(ScaleOfResults(metres, centimetres), 100);
-  EXPECT_TRUE(std::isnan(ScaleOfResults(metres, {})));
+  Tracks crowd;
+  for (int id = 0; id < 2001; ++id) crowd.push_back(Walk(id, {3.0 * id}));
+  EXPECT_THAT(testing::MessageOf(EvaluateTracks({Walk(1, {0})}, crowd, {})),
+              HasSubstr("frame 0 has 1 of truth and 2001 of results; at most 2000"));
+  Tracks many;
+  for (int id = 0; id < 4500; ++id) many.push_back(Walk(id, {0}, id));
+  EXPECT_THAT(testing::MessageOf(EvaluateTracks(many, many, {})), HasSubstr("too many to compare"));
 }
 
 TEST(ClearMot, BoxesByHand) {
@@ -221,6 +298,7 @@ TEST(ClearMot, BoxesByHand) {
   ASSERT_TRUE(m);
   EXPECT_EQ(m->matches, 1);
   EXPECT_DOUBLE_EQ(m->motp, 1 - 80.0 / 120);
+  EXPECT_DOUBLE_EQ(m->motp_similarity, 80.0 / 120);
   EXPECT_DOUBLE_EQ(m->modp, 80.0 / 120);
   const Result<TrackMeasures> strict = EvaluateBoxes({box(1, 0)}, {box(1, 2)}, {.min_iou = 0.7});
   EXPECT_EQ(strict->matches, 0);
@@ -242,6 +320,10 @@ TEST(ClearMot, KnownAnswerOfTudCampus) {
   EXPECT_EQ(m->switches, 7);
   EXPECT_EQ(m->fragmentations, 7);
   EXPECT_NEAR(m->idf1, 0.557659, 1e-6);
+  EXPECT_NEAR(m->motp_similarity, 1 - 0.277201, 1e-6);
+  EXPECT_NEAR(m->hota, 0.391397438, 1e-9);
+  EXPECT_NEAR(m->deta, 0.418047030, 1e-9);
+  EXPECT_NEAR(m->assa, 0.369120681, 1e-9);
 }
 
 TEST(ClearMot, PositionsOfPetsInTheUsualArea) {

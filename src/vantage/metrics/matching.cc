@@ -4,29 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
+#include <set>
+#include <utility>
 
 namespace vantage::metrics {
 namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-double Ratio(double part, double whole) {
-  return whole == 0 ? std::numeric_limits<double>::quiet_NaN() : part / whole;
-}
-
-double Ratio(std::int64_t part, std::int64_t whole) {
-  return Ratio(static_cast<double>(part), static_cast<double>(whole));
-}
-
 /// What is known of one truth track so far.
 struct History {
-  std::size_t result = kNone;  // matched last
-  std::size_t matched_at = 0;  // number of the frame of that match
-  std::int64_t frames = 0;
-  std::int64_t matches = 0;
-  bool lost = false;  // missed since the last match
+  std::size_t result = kNone;      // matched last
+  std::size_t matched_at = 0;      // number of the frame of that match
+  std::size_t present_at = kNone;  // number of the last frame that the truth is in
+  bool lost = false;               // missed since the last match
 };
 
 /// Row by row the column of the result that the truth was matched to last, where that still holds.
@@ -71,60 +62,103 @@ std::vector<int> MatchFrame(const FramePairs& frame, const std::vector<History>&
   return column_of;
 }
 
-}  // namespace
-
-void MeasureClearMot(const std::vector<FramePairs>& frames, std::size_t truth_tracks,
-                     TrackMeasures& measures) {
-  std::vector<History> histories(truth_tracks);
-  double distance_sum = 0;
-  for (std::size_t time = 0; time < frames.size(); ++time) {
-    const FramePairs& frame = frames[time];
-    const std::vector<int> column_of = MatchFrame(frame, histories);
-    std::int64_t matches = 0;
-    for (std::size_t row = 0; row < column_of.size(); ++row) {
-      History& history = histories[frame.truth[row]];
-      ++history.frames;
-      if (column_of[row] < 0) {
-        history.lost = history.result != kNone;
-        continue;
-      }
-      const auto column = static_cast<std::size_t>(column_of[row]);
-      const std::size_t result = frame.results[column];
-      if (history.result != kNone && history.result != result) ++measures.switches;
-      if (history.lost) ++measures.fragmentations;
-      history.result = result;
-      history.matched_at = time;
-      history.lost = false;
-      ++history.matches;
-      ++matches;
-      distance_sum += frame.distance(row, column);
-    }
-    measures.truth_positions += std::ssize(frame.truth);
-    measures.result_positions += std::ssize(frame.results);
-    measures.matches += matches;
+/// Lengthens the last stretch of `object`, or begins another.
+void AddToSpans(FrameIndex frame, bool follows, std::optional<TrackId> result,
+                ObjectMeasures& object) {
+  if (follows && object.spans.back().result == result) {
+    object.spans.back().last_frame = frame;
+  } else {
+    object.spans.push_back({frame, frame, result});
   }
-  measures.misses = measures.truth_positions - measures.matches;
-  measures.false_positives = measures.result_positions - measures.matches;
-  for (const History& history : histories) {
+}
+
+/// Ratios of the counts.
+void Finish(double distance_sum, double largest_distance, TrackAnalysis& analysis) {
+  TrackMeasures& measures = analysis.measures;
+  for (const ObjectMeasures& object : analysis.truth) {
     // In whole numbers: 0.8 has no exact double.
-    if (5 * history.matches >= 4 * history.frames) {
+    if (5 * object.matches >= 4 * object.positions) {
       ++measures.mostly_tracked;
-    } else if (5 * history.matches < history.frames) {
+    } else if (5 * object.matches < object.positions) {
       ++measures.mostly_lost;
     } else {
       ++measures.partially_tracked;
     }
+    measures.switches += object.switches;
+    measures.fragmentations += object.fragmentations;
   }
+  measures.misses = measures.truth_positions - measures.matches;
+  measures.false_positives = measures.result_positions - measures.matches;
   const std::int64_t errors = measures.misses + measures.false_positives + measures.switches;
   measures.mota = 1 - Ratio(errors, measures.truth_positions);
   measures.motp = Ratio(distance_sum, static_cast<double>(measures.matches));
+  measures.motp_similarity = 1 - measures.motp / largest_distance;
   measures.precision = Ratio(measures.matches, measures.result_positions);
   measures.recall = Ratio(measures.matches, measures.truth_positions);
 }
 
-void MeasureIdentity(const std::vector<FramePairs>& frames, std::size_t truth_tracks,
-                     std::size_t result_tracks, TrackMeasures& measures) {
-  CostMatrix together(truth_tracks, result_tracks);  // frames in which the two match
+}  // namespace
+
+void MeasureClearMot(const std::vector<FramePairs>& frames, double largest_distance,
+                     TrackAnalysis& analysis) {
+  TrackMeasures& measures = analysis.measures;
+  std::vector<History> histories(analysis.truth.size());
+  std::set<std::pair<std::size_t, std::size_t>> partners;  // truth, result
+  double distance_sum = 0;
+  for (std::size_t time = 0; time < frames.size(); ++time) {
+    const FramePairs& frame = frames[time];
+    const std::vector<int> column_of = MatchFrame(frame, histories);
+    FrameMeasures& here = analysis.frames.emplace_back();
+    here.frame = frame.frame;
+    here.truth = std::ssize(frame.truth);
+    here.results = std::ssize(frame.results);
+    for (std::size_t row = 0; row < column_of.size(); ++row) {
+      const std::size_t truth = frame.truth[row];
+      History& history = histories[truth];
+      ObjectMeasures& object = analysis.truth[truth];
+      const bool follows = history.present_at != kNone && history.present_at + 1 == time;
+      history.present_at = time;
+      if (column_of[row] < 0) {
+        history.lost = history.result != kNone;
+        AddToSpans(frame.frame, follows, std::nullopt, object);
+        continue;
+      }
+      const auto column = static_cast<std::size_t>(column_of[row]);
+      const std::size_t result = frame.results[column];
+      const double distance = frame.distance(row, column);
+      ObjectMeasures& found = analysis.results[result];
+      if (history.result != kNone && history.result != result) {
+        ++object.switches;
+        ++here.switches;
+      }
+      if (history.lost) ++object.fragmentations;
+      history.result = result;
+      history.matched_at = time;
+      history.lost = false;
+      partners.emplace(truth, result);
+      ++here.matches;
+      here.distance_sum += distance;
+      for (ObjectMeasures* side : {&object, &found}) {
+        ++side->matches;
+        side->distance_sum += distance;
+      }
+      AddToSpans(frame.frame, follows, found.id, object);
+    }
+    measures.truth_positions += here.truth;
+    measures.result_positions += here.results;
+    measures.matches += here.matches;
+    distance_sum += here.distance_sum;
+  }
+  for (const auto& [truth, result] : partners) {
+    ++analysis.truth[truth].partners;
+    ++analysis.results[result].partners;
+  }
+  Finish(distance_sum, largest_distance, analysis);
+}
+
+void MeasureIdentity(const std::vector<FramePairs>& frames, TrackAnalysis& analysis) {
+  TrackMeasures& measures = analysis.measures;
+  CostMatrix together(analysis.truth.size(), analysis.results.size());  // frames where they match
   std::fill(together.values.begin(), together.values.end(), 0);
   for (const FramePairs& frame : frames) {
     for (std::size_t row = 0; row < frame.truth.size(); ++row) {
@@ -139,10 +173,17 @@ void MeasureIdentity(const std::vector<FramePairs>& frames, std::size_t truth_tr
   CostMatrix cost = together;
   for (double& value : cost.values) value = most - value;
   const std::vector<int> result_of = Assign(cost);
-  for (std::size_t truth = 0; truth < truth_tracks; ++truth) {
-    if (result_of[truth] < 0) continue;
-    measures.id_true_positives +=
-        static_cast<std::int64_t>(together(truth, static_cast<std::size_t>(result_of[truth])));
+  for (std::size_t i = 0; i < result_of.size(); ++i) {
+    if (result_of[i] < 0) continue;
+    ObjectMeasures& truth = analysis.truth[i];
+    ObjectMeasures& result = analysis.results[static_cast<std::size_t>(result_of[i])];
+    const auto matches =
+        static_cast<std::int64_t>(together(i, static_cast<std::size_t>(result_of[i])));
+    if (matches == 0) continue;
+    truth.identity = result.id;
+    result.identity = truth.id;
+    truth.id_true_positives = result.id_true_positives = matches;
+    measures.id_true_positives += matches;
   }
   measures.idf1 =
       Ratio(2 * measures.id_true_positives, measures.truth_positions + measures.result_positions);
@@ -151,7 +192,8 @@ void MeasureIdentity(const std::vector<FramePairs>& frames, std::size_t truth_tr
 }
 
 void MeasureDetection(const std::vector<FramePairs>& frames, double largest_distance,
-                      TrackMeasures& measures) {
+                      TrackAnalysis& analysis) {
+  TrackMeasures& measures = analysis.measures;
   std::int64_t matches = 0;
   double quality_sum = 0;
   for (const FramePairs& frame : frames) {
