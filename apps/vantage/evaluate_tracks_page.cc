@@ -114,6 +114,7 @@ std::vector<std::size_t> Worst(const std::vector<ObjectMeasures>& objects) {
 /// is missed, a tick where the match changes.
 std::string Timeline(const TrackAnalysis& analysis, const std::vector<std::size_t>& shown) {
   constexpr double kWidth = 1100, kLeft = 60, kRight = kWidth - 10, kTop = 8, kRow = 16;
+  constexpr double kLeastMiss = 1.5;
   // From the palette of Okabe and Ito; a number stands beside, where there is room.
   constexpr std::array<const char*, 7> kColors = {"#56b4e9", "#e69f00", "#009e73", "#f0e442",
                                                   "#cc79a7", "#8aa0ff", "#b0b0b0"};
@@ -137,15 +138,16 @@ std::string Timeline(const TrackAnalysis& analysis, const std::vector<std::size_
     svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", kLeft - 6,
                        top + 11, id);
     std::optional<TrackId> before;
+    std::string misses;  // on top, so that short ones show
     for (const MatchSpan& span : object.spans) {
       const double left = at(span.first_frame);
       const double width = at(span.last_frame + step) - left;
       const std::string frames = fmt::format("frames {} to {}", span.first_frame, span.last_frame);
       if (!span.result) {
-        svg += fmt::format(
+        misses += fmt::format(
             "<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"2\" fill=\"#d00000\"><title>"
             "{}, {}: missed</title></rect>\n",
-            left, top + 6, width, id, frames);
+            left, top + 6, std::max(width, kLeastMiss), id, frames);
         continue;
       }
       const auto result = static_cast<std::int64_t>(*span.result);
@@ -166,6 +168,7 @@ std::string Timeline(const TrackAnalysis& analysis, const std::vector<std::size_
       }
       before = span.result;
     }
+    svg += misses;
   }
   for (const auto& [frame, anchor] : {std::pair{analysis.frames.front().frame, "start"},
                                       std::pair{analysis.frames.back().frame, "end"}}) {

@@ -247,7 +247,7 @@ TEST(EvaluateTracksProgram, ThePageStandsAloneAndItsChartsShowTheFigures) {
   EXPECT_EQ(Points(charts[4].select_nodes("polyline")[0].node()).size(), 19u);
 
   // Of person 1 a bar of 4 frames and one of 6 with a tick between; of person 2 bars of 3 and 5
-  // frames with a thin line of 2 between.
+  // frames and a thin line of 2 between.
   std::vector<std::pair<double, double>> spans;  // x, width
   for (const auto& found : charts[5].select_nodes("rect")) {
     spans.emplace_back(found.node().attribute("x").as_double(),
@@ -259,9 +259,10 @@ TEST(EvaluateTracksProgram, ThePageStandsAloneAndItsChartsShowTheFigures) {
   EXPECT_NEAR(spans[1].first, spans[0].first + 4 * frame, 0.1);
   EXPECT_NEAR(spans[2].first, spans[1].first, 1.01);  // the tick
   EXPECT_NEAR(spans[3].second, 3 * frame, 0.1);
-  EXPECT_NEAR(spans[4].second, 2 * frame, 0.1);
-  EXPECT_NEAR(spans[5].first + spans[5].second, spans[1].first + spans[1].second, 0.1);
-  EXPECT_STREQ(charts[5].select_node("rect[5]/title").node().text().as_string(),
+  EXPECT_NEAR(spans[4].first + spans[4].second, spans[1].first + spans[1].second, 0.1);
+  EXPECT_NEAR(spans[5].first, spans[0].first + 3 * frame, 0.1);
+  EXPECT_NEAR(spans[5].second, 2 * frame, 0.1);
+  EXPECT_STREQ(charts[5].select_node("rect[6]/title").node().text().as_string(),
                "2, frames 3 to 4: missed");
 }
 
