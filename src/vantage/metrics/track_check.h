@@ -30,7 +30,7 @@ struct TrackRemark {
 ///   before the first or after the last frame of truth; tracks with gaps;
 /// - positions far from everything in the truth (on the ground more than 1 km);
 /// - coordinates of another scale, such as centimetres;
-/// - frames numbered differently: results that fit the truth clearly better when moved in time;
+/// - frames numbered differently: results that fit the truth better when moved in time;
 /// - no match at all.
 std::vector<TrackRemark> CheckTracks(const Tracks& truth, const Tracks& results,
                                      const EvaluationOptions& options,

@@ -74,12 +74,26 @@ TEST(TrackCheck, TimeOffset) {
   ASSERT_FALSE(later.empty());
   EXPECT_TRUE(later[0].warning);
   EXPECT_THAT(later[0].text, HasSubstr("frame numbers lowered by 3 would fit the truth better "
-                                       "(mean similarity 1.00 in place of"));
+                                       "(mean similarity 1.000 in place of"));
   EXPECT_THAT(Check(TwoPeople(1000), TwoPeople()).front().text, HasSubstr("raised by 1000"));
   // Truth in every 40th frame, results one frame off: none falls on a frame that counts.
   Tracks sparse = {Walk(1, {0, 1, 2, 3}, 0, 40)};
   EXPECT_THAT(Check(sparse, {Walk(1, {0, 1, 2, 3}, 1, 40)}).front().text,
               HasSubstr("lowered by 1 would"));
+}
+
+TEST(TrackCheck, ASmallTimeOffsetIsANote) {
+  // 0.05 m a frame: one frame off costs 0.025 of similarity.
+  Tracks truth = {Walk(1, {})};
+  Tracks results = {Walk(1, {})};
+  for (FrameIndex frame = 0; frame < 100; ++frame) {
+    truth[0].points.push_back({frame, 0.05 * static_cast<double>(frame), 0, false});
+    results[0].points.push_back({frame, 0.05 * static_cast<double>(frame - 1), 0, false});
+  }
+  const std::vector<TrackRemark> remarks = Check(truth, results);
+  ASSERT_THAT(remarks, SizeIs(1));
+  EXPECT_FALSE(remarks[0].warning);
+  EXPECT_THAT(remarks[0].text, HasSubstr("lowered by 1 would"));
 }
 
 TEST(TrackCheck, FramesWithoutTruthOrResults) {
