@@ -96,17 +96,24 @@ bool FlowSolver::SettleAll(const RunControl& control) {
   const std::int64_t frames_before = kNear == kOut ? 0 : frames;
   std::int64_t reported = -1;
   std::vector<Vertex> waiting;
-  for (const NodeId id : open_) {
+  const auto settle = [&](NodeId id) {
     const Vertex vertex = At(id, kNear);
-    if (const std::int64_t frame = nodes_[id].frame - nodes_.first_frame(); frame > reported) {
-      control.Report(frames_before + frame, 2 * frames);
-      reported = frame;
-    }
-    if (LinkOf(vertex) != kOpen) continue;
+    const std::int64_t done = kNear == kOut ? nodes_.end_frame() - 1 - nodes_[id].frame
+                                            : nodes_[id].frame - nodes_.first_frame();
+    if (done > reported) control.Report(frames_before + done, 2 * frames);
+    reported = std::max(reported, done);
+    if (LinkOf(vertex) != kOpen) return true;
     const QueueEntry start = Entry<kNear>(0, vertex);
     const Outcome outcome = Search<kNear>(std::span(&start, 1), effort_.nearby, control);
-    if (outcome == Outcome::kStopped) return false;
     if (outcome == Outcome::kGaveUp) waiting.push_back(vertex);
+    return outcome != Outcome::kStopped;
+  };
+  // Against the direction of the search: what lies ahead is linked already, what lies behind is
+  // not, so that no search slides back along paths, on which reduced costs are 0, to their other
+  // end.
+  if (kNear == kOut ? !std::all_of(open_.rbegin(), open_.rend(), settle)
+                    : !std::all_of(open_.begin(), open_.end(), settle)) {
+    return false;
   }
   const std::int64_t nodes = frames * static_cast<std::int64_t>(network_.cells());
   const auto between_sweeps =
