@@ -92,38 +92,56 @@ void BM_Link(benchmark::State& state, Answer (*solve)(const Case&), Case& (*get)
   state.counters["MB"] = 1e-6 * largest_bytes;
 }
 
-/// CostScaling and NetworkSimplex take minutes, 2 to 16 times as long as CapacityScaling
-/// (BENCHMARKS.md): they run when the environment has VANTAGE_BENCH_SLOW.
+/// CostScaling and NetworkSimplex take minutes, 3 to 16 times as long as CapacityScaling
+/// (BENCHMARKS.md): they run, and count, when the environment has VANTAGE_BENCH_SLOW.
 bool WithSlowPeers() { return std::getenv("VANTAGE_BENCH_SLOW") != nullptr; }
 
-void Register(const std::string& name, Answer (*solve)(const Case&), Case& (*get)(), bool often) {
-  auto* const benchmark = benchmark::RegisterBenchmark(
-      ("BM_Link/" + name).c_str(), [=](benchmark::State& state) { BM_Link(state, solve, get); });
-  benchmark->UseManualTime()->Unit(benchmark::kMillisecond);
-  if (!often) benchmark->Iterations(1);
+void BM_LinkSlowly(benchmark::State& state, Answer (*solve)(const Case&), Case& (*get)()) {
+  if (!WithSlowPeers()) return state.SkipWithError("takes minutes; set VANTAGE_BENCH_SLOW to run");
+  BM_Link(state, solve, get);
 }
 
-/// Ours and the fastest of LEMON's algorithms on a case: time, and memory of the same runs.
-bool AddCase(const std::string& name, Case& (*get)()) {
-  const std::string ours = name + ".ours";
-  Register(ours, Ours, get, true);
-  std::vector<Peer> peers;
-  const auto add = [&](const std::string& algorithm, Answer (*solve)(const Case&)) {
-    Register(name + "." + algorithm, solve, get, false);
-    peers.push_back({fmt::format("BM_Link/{}.{}", name, algorithm), "LEMON " + algorithm});
-  };
-  add("CapacityScaling", Lemon<LemonAlgorithm::kCapacityScaling>);
+void Often(benchmark::internal::Benchmark* benchmark) {
+  benchmark->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+void Once(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+constexpr auto* kCapacityScaling = Lemon<LemonAlgorithm::kCapacityScaling>;
+constexpr auto* kCostScaling = Lemon<LemonAlgorithm::kCostScaling>;
+constexpr auto* kNetworkSimplex = Lemon<LemonAlgorithm::kNetworkSimplex>;
+
+BENCHMARK_CAPTURE(BM_Link, room.ours, Ours, Room)->Apply(Often);
+BENCHMARK_CAPTURE(BM_Link, room.CapacityScaling, kCapacityScaling, Room)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkSlowly, room.CostScaling, kCostScaling, Room)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkSlowly, room.NetworkSimplex, kNetworkSimplex, Room)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, arena.ours, Ours, Arena)->Apply(Often);
+BENCHMARK_CAPTURE(BM_Link, arena.CapacityScaling, kCapacityScaling, Arena)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkSlowly, arena.CostScaling, kCostScaling, Arena)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkSlowly, arena.NetworkSimplex, kNetworkSimplex, Arena)->Apply(Once);
+BENCHMARK_CAPTURE(BM_Link, crowd.ours, Ours, Crowd)->Apply(Often);
+BENCHMARK_CAPTURE(BM_Link, crowd.CapacityScaling, kCapacityScaling, Crowd)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkSlowly, crowd.CostScaling, kCostScaling, Crowd)->Apply(Once);
+BENCHMARK_CAPTURE(BM_LinkSlowly, crowd.NetworkSimplex, kNetworkSimplex, Crowd)->Apply(Once);
+
+/// With the fastest of LEMON's algorithms on the case: time, and memory of the same run.
+bool CompareCase(const std::string& name) {
+  std::vector<Peer> peers = {
+      {fmt::format("BM_Link/{}.CapacityScaling", name), "LEMON CapacityScaling"}};
   if (WithSlowPeers()) {
-    add("CostScaling", Lemon<LemonAlgorithm::kCostScaling>);
-    add("NetworkSimplex", Lemon<LemonAlgorithm::kNetworkSimplex>);
+    for (const std::string algorithm : {"CostScaling", "NetworkSimplex"}) {
+      peers.push_back({fmt::format("BM_LinkSlowly/{}.{}", name, algorithm), "LEMON " + algorithm});
+    }
   }
+  const std::string ours = fmt::format("BM_Link/{}.ours", name);
   return Compare({.name = fmt::format("linking.{}.1t.vs_lemon", name),
-                  .ours = "BM_Link/" + ours,
+                  .ours = ours,
                   .peers = peers,
                   .unit = "ms",
                   .threads = 1}) &&
          Compare({.name = fmt::format("linking.{}.memory.vs_lemon", name),
-                  .ours = "BM_Link/" + ours,
+                  .ours = ours,
                   .peers = peers,
                   .best_in = "ms",
                   .unit = "MB",
@@ -131,7 +149,7 @@ bool AddCase(const std::string& name, Case& (*get)()) {
                   .lower_is_better = true});
 }
 
-const bool kAdded = AddCase("room", Room) && AddCase("arena", Arena) && AddCase("crowd", Crowd);
+const bool kCompared = CompareCase("room") && CompareCase("arena") && CompareCase("crowd");
 
 }  // namespace
 }  // namespace vantage::bench

@@ -112,15 +112,18 @@ std::vector<Candidate> SortCandidates() {
 }
 
 Candidate BestOf(const std::vector<Candidate>& candidates, const NoisyRecording& recording) {
-  const Candidate* best = nullptr;
-  double best_mota = 0;
-  for (const Candidate& candidate : candidates) {
-    const double mota = Evaluate(recording.truth, candidate.link(recording)).mota;
-    if (best != nullptr && mota <= best_mota) continue;
-    best = &candidate;
-    best_mota = mota;
+  const auto mota = [&recording](const Candidate& candidate) {
+    return Evaluate(recording.truth, candidate.link(recording)).mota;
+  };
+  Candidate best = candidates.front();
+  double best_mota = mota(best);
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    const double candidate_mota = mota(candidates[i]);
+    if (candidate_mota <= best_mota) continue;
+    best = candidates[i];
+    best_mota = candidate_mota;
   }
-  return *best;
+  return best;
 }
 
 void BM_LinkNoise(benchmark::State& state, std::vector<Candidate> (*candidates)(),

@@ -179,9 +179,8 @@ void Scene::Draw() {
           std::clamp(walker.position.y + error_y, 0.0, options_.rows - 1e-6)});
   }
 
-  double expected = options_.false_alarms / kMeanFalseAlarmFrames;
-  for (; expected > 0; --expected) {
-    if (!Chance(expected)) continue;
+  const double expected = options_.false_alarms / kMeanFalseAlarmFrames;
+  for (int i = 0; i < expected && Chance(expected - i); ++i) {
     const Vector place = AnyPlace();
     false_alarms_.push_back({place, Chance(0.2) ? 2 + Below(5) : 1});
   }
