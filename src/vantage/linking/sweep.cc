@@ -95,6 +95,8 @@ void Sweep::FirstPass() {
   for (std::int64_t step = 0; step < frame_count(); ++step) DoFrame<kNear>(step, all_);
 }
 
+void Sweep::PassOnce() { FirstPass<kOut>(); }
+
 std::span<const Sweep::Stretch> Sweep::ToDoAfter(const Frame& ahead) {
   std::fill(todo_.begin(), todo_.end(), Stretch{});
   const int depth = network_.depth;

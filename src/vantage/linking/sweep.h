@@ -46,7 +46,7 @@ class Sweep {
   Cost SetPotentials(Targets targets, double most);
 
   /// One pass over every arc: what the first round does, for measuring.
-  void PassOnce() { FirstPass<kOut>(); }
+  void PassOnce();
 
  private:
   /// Columns [begin, end) of a row.
