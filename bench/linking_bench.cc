@@ -17,6 +17,9 @@
 #include "bench/report.h"
 #include "vantage/linking/lemon_oracle.h"
 #include "vantage/linking/linker.h"
+#include "vantage/linking/network.h"
+#include "vantage/linking/node_store.h"
+#include "vantage/linking/sweep.h"
 #include "vantage/linking/test_scenes.h"
 
 namespace vantage::bench {
@@ -27,7 +30,7 @@ using testing::LemonAnswer;
 using testing::RecordedScene;
 using testing::SceneOptions;
 
-/// A problem that every solver is given, one thread each.
+/// A problem that every solver is given.
 struct Case {
   Case(const SceneOptions& scene_options, int depth) : scene(scene_options) {
     options.depth = depth;
@@ -92,6 +95,48 @@ void BM_Link(benchmark::State& state, Answer (*solve)(const Case&), Case& (*get)
   state.counters["MB"] = 1e-6 * largest_bytes;
 }
 
+struct SweepRun {
+  double sweep_secs = 0;
+  double link_secs = 0;
+};
+
+SweepRun SweepOnce(const Case& problem) {
+  const LinkingProblem maps = problem.scene.problem();
+  const linking::Network network =
+      linking::MakeNetwork(
+          {.columns = maps.columns, .rows = maps.rows, .access = maps.access, .obstacle = {}},
+          problem.options)
+          .value();
+  linking::NodeStore nodes(network);
+  for (std::int64_t frame = 0; frame < maps.frames; ++frame) {
+    nodes.AddFrame(maps.probability.subspan(static_cast<std::size_t>(frame) * network.cells(),
+                                            network.cells()));
+    nodes.Costs(frame);  // they are kept: the sweep finds them ready
+  }
+  const double before_secs = ProcessorSeconds();
+  linking::Sweep(network, nodes).PassOnce();
+  const double swept_secs = ProcessorSeconds();
+  Ours(problem);
+  return {swept_secs - before_secs, ProcessorSeconds() - swept_secs};
+}
+
+/// One pass of dynamic programming over every arc, by the kernel that linking uses, and how many
+/// times as long the whole of linking takes.
+void BM_LinkSweep(benchmark::State& state) {
+  double sweep_secs = 0, link_secs = 0;
+  for (auto _ : state) {
+    const Result<ChildRun<SweepRun>> run = RunInChild<SweepRun>([] { return SweepOnce(Arena()); });
+    if (!run) return state.SkipWithError(run.error().message.c_str());
+    state.SetIterationTime(run->value.sweep_secs);
+    sweep_secs += run->value.sweep_secs;
+    link_secs += run->value.link_secs;
+  }
+  const auto nodes = static_cast<double>(Arena().scene.probability.size());
+  state.counters["ns/node"] = 1e9 * sweep_secs / static_cast<double>(state.iterations()) / nodes;
+  state.counters["multiple"] = link_secs / sweep_secs;
+}
+BENCHMARK(BM_LinkSweep)->Iterations(5)->UseManualTime()->Unit(benchmark::kMillisecond);
+
 /// CostScaling and NetworkSimplex take minutes, 3 to 16 times as long as CapacityScaling
 /// (BENCHMARKS.md): they run, and count, when the environment has VANTAGE_BENCH_SLOW.
 bool WithSlowPeers() { return std::getenv("VANTAGE_BENCH_SLOW") != nullptr; }
@@ -149,7 +194,14 @@ bool CompareCase(const std::string& name) {
                   .lower_is_better = true});
 }
 
-const bool kCompared = CompareCase("room") && CompareCase("arena") && CompareCase("crowd");
+const bool kCompared = CompareCase("room") && CompareCase("arena") && CompareCase("crowd") &&
+                       Compare({.name = "linking.arena.multiple_of_sweep",
+                                .ours = "BM_LinkSweep",
+                                .peer_name = "10 sweeps",
+                                .limit = 10,
+                                .unit = "multiple",
+                                .threads = 1,
+                                .lower_is_better = true});
 
 }  // namespace
 }  // namespace vantage::bench
