@@ -21,7 +21,7 @@ constexpr Cost Mirror(Cost potential) {
 }  // namespace
 
 FlowSolver::FlowSolver(const Network& network, const SearchEffort& effort)
-    : network_(network), effort_(effort), nodes_(network) {}
+    : network_(network), effort_(effort), nodes_(network), last_exit_cost_(network.exit_cost) {}
 
 void FlowSolver::AddFrame(std::span<const float> probability) {
   if (nodes_.end_frame() > nodes_.first_frame()) ReopenLastFrame();
@@ -31,24 +31,32 @@ void FlowSolver::AddFrame(std::span<const float> probability) {
   if (nodes_.end_frame() - 1 > nodes_.first_frame()) SetFirstPotentials();
 }
 
+// An exit arc that comes into being again, at the full cost, needs y(out(v)) >= -cost. To raise
+// y(out(v)) of a path's end takes nothing from any other arc: the next frame has none yet, and
+// those within the node come from out(v).
 void FlowSolver::ReopenLastFrame() {
   const auto first = std::ssize(open_);
   nodes_.ForEach(nodes_.end_frame() - 1, [this](NodeId id) {
     Node& node = nodes_[id];
-    if (node.link[kOut] != kToEdge || network_.access[network_.Cell(node.column, node.row)] != 0) {
-      return;
-    }
+    if (node.link[kOut] != kToEdge) return;
     node.link[kOut] = kOpen;
+    node.potential[kOut] = std::max(node.potential[kOut], -network_.exit_cost);
     open_.push_back(id);
   });
   std::sort(open_.begin() + first, open_.end());
 }
 
+void FlowSolver::CloseEnd() {
+  ReopenLastFrame();
+  last_exit_cost_ = network_.exit_cost;
+}
+
 // With y(in(w)) = min(0, min over moves of y(out(v)) + cost) the moves keep the condition, and the
 // entries, which cost at least 0, do too. A node that carries flow (c < 0) needs y(out(w)) >=
-// y(in(w)) + c, and y(out(w)) >= -exit cost since w is an exit: 0 will do. One that carries none
-// needs y(out(w)) in [-exit cost, y(in(w)) + c]; where that is empty a path through w would pay
-// already, and w carries flow from the start. Nodes that no y(out(v)) < 0 reaches keep y = 0.
+// y(in(w)) + c, and y(out(w)) >= -exit cost (of the last frame) since w is an exit: 0 will do. One
+// that carries none needs y(out(w)) in [-exit cost, y(in(w)) + c]; where that is empty a path
+// through w would pay already, and w carries flow from the start. Nodes that no y(out(v)) < 0
+// reaches keep y = 0.
 void FlowSolver::SetFirstPotentials() {
   const std::int64_t frame = nodes_.end_frame() - 1;
   std::vector<NodeId> before;
@@ -76,8 +84,8 @@ void FlowSolver::SetFirstPotentials() {
     Node& node = nodes_[id];
     if (node.Carries()) continue;
     const Cost highest = node.potential[kIn] + node.cost;
-    node.potential[kOut] = std::clamp<Cost>(highest, -network_.exit_cost, 0);
-    if (highest >= -network_.exit_cost) continue;
+    node.potential[kOut] = std::clamp<Cost>(highest, -last_exit_cost_, 0);
+    if (highest >= -last_exit_cost_) continue;
     node.link[kIn] = node.link[kOut] = kOpen;
     open_.push_back(id);
   }
@@ -209,15 +217,14 @@ void FlowSolver::Expand(Vertex vertex, Cost distance) {
     if (node.Carries()) Relax<kNear>(other_side, base - node.cost, vertex);
     const bool at_edge = kNear == kOut ? IsExit(node) : IsEntrance(node);
     if (targets_ == Targets::kImbalances && at_edge && link != kToEdge) {
-      const Cost edge_cost = kNear == kOut ? network_.exit_cost : network_.entry_cost;
-      OfferTarget(kEdge, base + edge_cost - Mirror<kNear>(edge_potential_[kNear]), vertex);
+      OfferTarget(kEdge, base + EdgeCost(node, kNear) - Mirror<kNear>(edge_potential_[kNear]),
+                  vertex);
     }
     ExpandMoves<kNear>(id, base);
   } else if (!node.Carries()) {
     Relax<kNear>(other_side, base + node.cost, vertex);
   } else if (link == kToEdge) {
-    const Cost edge_cost = kFar == kOut ? network_.exit_cost : network_.entry_cost;
-    OfferTarget(kEdge, base - edge_cost - Mirror<kNear>(edge_potential_[kFar]), vertex);
+    OfferTarget(kEdge, base - EdgeCost(node, kFar) - Mirror<kNear>(edge_potential_[kFar]), vertex);
   } else if (IsNode(link)) {
     Relax<kNear>(At(link, kNear), base - MoveCost(node, nodes_[link]), vertex);
   }
@@ -382,7 +389,7 @@ Cost FlowSolver::FrameCost(std::int64_t frame) const {
     total += node.cost;
     if (node.link[kIn] == kToEdge) total += network_.entry_cost;
     const Link next = node.link[kOut];
-    total += next == kToEdge ? network_.exit_cost : MoveCost(node, nodes_[next]);
+    total += next == kToEdge ? ExitCost(node) : MoveCost(node, nodes_[next]);
   });
   return total;
 }

@@ -60,9 +60,9 @@ inline constexpr SearchEffort kNoSweeps = {.first_sweep = 0,
 /// seen cost much; whole tracks are never searched.
 ///
 /// A stream. Frames may be added after the flow was settled, and the oldest dropped:
-///  - A new frame takes from the frame before the right to end everywhere: paths that ended there
-///    have an excess again. Its nodes get the largest potentials <= 0 that the new arcs allow
-///    (AddFrame), so the condition holds, and settling goes on from there.
+///  - A new frame takes from the frame before the right to end everywhere (and at another cost):
+///    paths that ended there have an excess again. Its nodes get the largest potentials <= 0 that
+///    the new arcs allow (AddFrame), so the condition holds, and settling goes on from there.
 ///  - Dropping a frame fixes the flow in it and takes its residual arcs away. Fewer arcs keep the
 ///    condition: the flow stays optimal among those that continue what was dropped.
 class FlowSolver {
@@ -73,6 +73,12 @@ class FlowSolver {
   /// Adds the next frame, which CheckFrame has passed; `probability` must outlive the frame here.
   /// After Settle only with kNoSweeps.
   void AddFrame(std::span<const float> probability);
+
+  /// While the last frame is not the end of the recording, paths that reach it may stop there for
+  /// nothing: nobody knows yet where they end. Before the first frame.
+  void OpenEnd() { last_exit_cost_ = 0; }
+  /// The last frame is the last one: who ends there pays. Settle must follow.
+  void CloseEnd();
 
   /// Finds the minimum-cost flow over the frames that are here. False when stopped by the caller.
   bool Settle(const RunControl& control);
@@ -113,6 +119,13 @@ class FlowSolver {
   bool IsExit(const Node& node) const {
     return node.frame + 1 == nodes_.end_frame() ||
            network_.access[network_.Cell(node.column, node.row)] != 0;
+  }
+  Cost ExitCost(const Node& node) const {
+    return node.frame + 1 == nodes_.end_frame() ? last_exit_cost_ : network_.exit_cost;
+  }
+  /// Of the arc between the node and the edge, on one side.
+  Cost EdgeCost(const Node& node, Side side) const {
+    return side == kOut ? ExitCost(node) : network_.entry_cost;
   }
   Cost MoveCost(const Node& a, const Node& b) const {
     return network_.MoveCost(b.column - a.column, b.row - a.row);
@@ -156,6 +169,7 @@ class FlowSolver {
   const Network& network_;
   const SearchEffort effort_;
   NodeStore nodes_;
+  Cost last_exit_cost_;
   std::vector<NodeId> open_;  // nodes with an imbalance, the oldest first
 
   // The edge is one vertex until paths are taken away; then its two sides part.

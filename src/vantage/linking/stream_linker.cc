@@ -21,7 +21,9 @@ class StreamLinker::State {
   State(linking::Network network, std::int64_t lag_frames)
       : network_(std::move(network)),
         lag_frames_(lag_frames),
-        solver_(network_, linking::kNoSweeps) {}
+        solver_(network_, linking::kNoSweeps) {
+    solver_.OpenEnd();
+  }
 
   Result<std::optional<StreamFrame>> Add(std::span<const float> probability) {
     if (report_.frames == std::numeric_limits<std::int32_t>::max()) {
@@ -47,6 +49,10 @@ class StreamLinker::State {
 
   std::vector<StreamFrame> Finish() {
     std::vector<StreamFrame> frames;
+    if (report_.final_frames < report_.frames) {
+      solver_.CloseEnd();
+      solver_.Settle({});
+    }
     while (report_.final_frames < report_.frames) frames.push_back(MakeFirstFrameFinal());
     return frames;
   }
