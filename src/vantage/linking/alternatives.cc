@@ -29,8 +29,9 @@ PathInStretch Within(const LinkedPath& path, const Stretch& stretch,
     if (!part.cells.empty()) cost += network.MoveCost(part.cells.back(), cell);
     part.cells.push_back(cell);
   }
-  if (part.first_frame == path.first_frame) cost += network.network().entry_cost;
-  if (end == path_end) cost += network.network().exit_cost;
+  if (part.first_frame == path.first_frame)
+    cost += network.EntryCost(network.NodeAt(part.first_frame, part.cells.front()));
+  if (end == path_end) cost += network.ExitCost(network.NodeAt(end - 1, part.cells.back()));
   part.cost = FromUnits(cost);
   return part;
 }

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -77,6 +78,7 @@ Instance RandomInstance(unsigned seed, int side, int frames) {
   instance.options.clip = 0.05;
   instance.options.movement_cost = random.Chance(0.5) ? 0 : random.Unit();
   instance.options.max_paths = random.Chance(0.7) ? 0 : random.Int(1, 2);
+  if (random.Chance(0.1)) instance.options.inside_cost = 2 * random.Unit();
   return instance;
 }
 
@@ -106,13 +108,14 @@ class Enumeration {
   void Run(int node = 0) {
     if (node == std::ssize(solution_.next)) return visit_(solution_);
     Run(node + 1);
-    if (Taken(node) || !Access(node, 0)) return;
+    const std::optional<double> entry = EndCost(node, 0);
+    if (Taken(node) || !entry) return;
     const auto index = static_cast<std::size_t>(node);
     solution_.begins[index] = 1;
     ++solution_.paths;
-    solution_.cost += instance_.options.birth_cost;
+    solution_.cost += instance_.options.birth_cost + *entry;
     Continue(node, node + 1);
-    solution_.cost -= instance_.options.birth_cost;
+    solution_.cost -= instance_.options.birth_cost + *entry;
     --solution_.paths;
     solution_.begins[index] = 0;
   }
@@ -122,9 +125,10 @@ class Enumeration {
     return solution_.next[static_cast<std::size_t>(node)] != kFree ||
            instance_.obstacle[static_cast<std::size_t>(node % instance_.cells())] != 0;
   }
-  bool Access(int node, int free_frame) const {
-    return instance_.access[static_cast<std::size_t>(node % instance_.cells())] != 0 ||
-           node / instance_.cells() == free_frame;
+  /// What it costs to begin or end there; none: it cannot be.
+  std::optional<double> EndCost(int node, int free_frame) const {
+    const bool access = instance_.access[static_cast<std::size_t>(node % instance_.cells())] != 0;
+    return access || node / instance_.cells() == free_frame ? 0 : instance_.options.inside_cost;
   }
 
   /// A path has come to `node`; the next one may begin at `then` or after.
@@ -134,9 +138,9 @@ class Enumeration {
     const double p = instance_.probability[static_cast<std::size_t>(node)];
     const double here = before + std::clamp(-std::log(p / (1 - p)), -largest, largest);
     int& next = solution_.next[static_cast<std::size_t>(node)];
-    if (Access(node, instance_.frames - 1)) {
+    if (const std::optional<double> exit = EndCost(node, instance_.frames - 1)) {
       next = kEnd;
-      solution_.cost = here;
+      solution_.cost = here + *exit;
       Run(then);
     }
     const int frame = node / instance_.cells();

@@ -149,8 +149,8 @@ bool FlowSolver::KeepAtMost(std::int64_t count, const RunControl& control) {
     SweepPotentials<kOut>(kEverywhere);
     starts.clear();
     for (const Vertex end : ends) {
-      starts.push_back(
-          Entry<kOut>(edge_potential_[kOut] - network_.exit_cost - PotentialOf(end), end));
+      starts.push_back(Entry<kOut>(
+          edge_potential_[kOut] - EdgeCost(nodes_[NodeOf(end)], kOut) - PotentialOf(end), end));
     }
     if (Search<kOut>(starts, kUnlimited, control) == Outcome::kStopped) return false;
     // The search began at the edge's end of paths, at distance 0 (see UpdatePotentials).
@@ -215,10 +215,9 @@ void FlowSolver::Expand(Vertex vertex, Cost distance) {
   const Vertex other_side = At(id, Other(side));
   if (side == kNear) {
     if (node.Carries()) Relax<kNear>(other_side, base - node.cost, vertex);
-    const bool at_edge = kNear == kOut ? IsExit(node) : IsEntrance(node);
-    if (targets_ == Targets::kImbalances && at_edge && link != kToEdge) {
-      OfferTarget(kEdge, base + EdgeCost(node, kNear) - Mirror<kNear>(edge_potential_[kNear]),
-                  vertex);
+    const Cost edge_cost = EdgeCost(node, kNear);
+    if (targets_ == Targets::kImbalances && edge_cost < kNever && link != kToEdge) {
+      OfferTarget(kEdge, base + edge_cost - Mirror<kNear>(edge_potential_[kNear]), vertex);
     }
     ExpandMoves<kNear>(id, base);
   } else if (!node.Carries()) {
@@ -387,9 +386,9 @@ Cost FlowSolver::FrameCost(std::int64_t frame) const {
     const Node& node = nodes_[id];
     if (!node.Carries()) return;
     total += node.cost;
-    if (node.link[kIn] == kToEdge) total += network_.entry_cost;
+    if (node.link[kIn] == kToEdge) total += EdgeCost(node, kIn);
     const Link next = node.link[kOut];
-    total += next == kToEdge ? ExitCost(node) : MoveCost(node, nodes_[next]);
+    total += next == kToEdge ? EdgeCost(node, kOut) : MoveCost(node, nodes_[next]);
   });
   return total;
 }

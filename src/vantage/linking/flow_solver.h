@@ -113,19 +113,11 @@ class FlowSolver {
   };
   using Arc = std::pair<Vertex, Vertex>;
 
-  bool IsEntrance(const Node& node) const {
-    return node.frame == 0 || network_.access[network_.Cell(node.column, node.row)] != 0;
-  }
-  bool IsExit(const Node& node) const {
-    return node.frame + 1 == nodes_.end_frame() ||
-           network_.access[network_.Cell(node.column, node.row)] != 0;
-  }
-  Cost ExitCost(const Node& node) const {
-    return node.frame + 1 == nodes_.end_frame() ? last_exit_cost_ : network_.exit_cost;
-  }
-  /// Of the arc between the node and the edge, on one side.
+  /// Of the arc between the node and the edge, on one side; kNever: there is none.
   Cost EdgeCost(const Node& node, Side side) const {
-    return side == kOut ? ExitCost(node) : network_.entry_cost;
+    const std::size_t cell = network_.Cell(node.column, node.row);
+    if (side == kIn) return node.frame == 0 ? network_.entry_cost : network_.entry_costs[cell];
+    return node.frame + 1 == nodes_.end_frame() ? last_exit_cost_ : network_.exit_costs[cell];
   }
   Cost MoveCost(const Node& a, const Node& b) const {
     return network_.MoveCost(b.column - a.column, b.row - a.row);

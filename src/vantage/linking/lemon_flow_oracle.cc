@@ -51,8 +51,8 @@ class NetworkBuilder {
     }
     for (std::int64_t frame = 0; frame < problem_.frames; ++frame) {
       for (int cell = 0; cell < cells_; ++cell) {
-        if (!Blocked(cell) && (frame == 0 || problem_.access[cell] != 0)) {
-          Add(source_, In(frame, cell), 0);
+        if (!Blocked(cell) && MayEnd(cell, frame == 0)) {
+          Add(source_, In(frame, cell), EndCost(cell, frame == 0));
         }
       }
     }
@@ -97,7 +97,14 @@ class NetworkBuilder {
         }
       }
     }
-    if (last || problem_.access[cell] != 0) Add(Out(frame, cell), sink_, 0);
+    if (MayEnd(cell, last)) Add(Out(frame, cell), sink_, EndCost(cell, last));
+  }
+  /// Whether a path may begin or end there, and what that costs besides its birth.
+  bool MayEnd(int cell, bool everywhere) const {
+    return everywhere || problem_.access[cell] != 0 || problem_.inside_cost >= 0;
+  }
+  std::int64_t EndCost(int cell, bool everywhere) const {
+    return everywhere || problem_.access[cell] != 0 ? 0 : Units(problem_.inside_cost);
   }
 
   const PlainLinkingProblem& problem_;

@@ -26,6 +26,7 @@ struct PlainLinkingProblem {
   const std::uint8_t* obstacle;  ///< null: none
   int depth;
   double birth_cost, clip, movement_cost;
+  double inside_cost;  ///< below 0: never
   int max_paths;
 };
 

@@ -17,6 +17,7 @@ LemonAnswer SolveWithLemon(const LinkingProblem& problem, const LinkingOptions& 
                           .birth_cost = options.birth_cost,
                           .clip = options.clip,
                           .movement_cost = options.movement_cost,
+                          .inside_cost = options.inside_cost.value_or(-1),
                           .max_paths = options.max_paths},
       algorithm);
 }

@@ -68,6 +68,10 @@ void VisitOptions(LinkingOptions& options, OptionVisitor& visitor) {
                  Range::Inside(0, 0.5));
   visitor.Number({"movement_cost", "1/cell", "Cost of a move per cell of distance"},
                  options.movement_cost, Range::Between(0, 1000));
+  visitor.NumberOr({"inside_cost", "",
+                    "Cost of a path's beginning, and of its end, where people may not appear or "
+                    "vanish; auto: 45 for streams, never for recordings"},
+                   options.inside_cost, "auto", Range::Between(0, 1e6));
   visitor.Number({"max_paths", "", "At most this many paths; 0: any number"}, options.max_paths,
                  Range::AtLeast(0));
   visitor.Choice({"access", "", "Where people may appear and vanish, besides doors"},

@@ -39,6 +39,11 @@ struct LinkingOptions {
   /// shorter ways. 0, as in the paper, leaves identities to chance there. Chosen on the seven views
   /// of PETS 2009 S2.L1 (cells of 0.5 m, 7 frames per second).
   double movement_cost = 2;
+  /// What it costs a path, >= 0, to begin where people may not appear, and again to end where they
+  /// may not vanish (see access). None: it cannot be for recordings; for streams 45 (a cost of
+  /// kInsideCostOfStreams), since whoever cannot be told near an entrance in time would be lost
+  /// until near the next. Chosen on PETS 2009 S2.L1 and a simulated hall.
+  std::optional<double> inside_cost = std::nullopt;
   /// At most this many paths, >= 0; 0 means any number.
   int max_paths = 0;
   /// Where paths may begin and end; LinkPaths itself takes the cells as part of the problem.

@@ -21,9 +21,9 @@
 namespace vantage {
 namespace {
 
-using testing::Access;
 using testing::Blocked;
 using testing::CheckPaths;
+using testing::EdgeUnits;
 using testing::Instance;
 using testing::MayMove;
 using testing::MoveUnits;
@@ -42,7 +42,9 @@ std::int64_t BruteForce(const Instance& instance) {
     if (Blocked(instance, cell)) return;
     path.nodes |= std::uint64_t{1} << (frame * instance.cells() + cell);
     path.cost += NodeUnits(instance, frame, cell);
-    if (frame == instance.frames - 1 || Access(instance, cell)) all.push_back(path);
+    if (const auto exit = EdgeUnits(instance, cell, frame == instance.frames - 1)) {
+      all.push_back({path.nodes, path.cost + *exit});
+    }
     if (frame == instance.frames - 1) return;
     for (int to = 0; to < instance.cells(); ++to) {
       if (!MayMove(instance, cell, to)) continue;
@@ -51,8 +53,9 @@ std::int64_t BruteForce(const Instance& instance) {
   };
   for (int frame = 0; frame < instance.frames; ++frame) {
     for (int cell = 0; cell < instance.cells(); ++cell) {
-      if (frame == 0 || Access(instance, cell))
-        extend(frame, cell, {0, Units(instance.options.birth_cost)});
+      if (const auto entry = EdgeUnits(instance, cell, frame == 0)) {
+        extend(frame, cell, {0, *entry + Units(instance.options.birth_cost)});
+      }
     }
   }
   const int most =

@@ -101,9 +101,15 @@ Result<Network> MakeNetwork(const StreamGrid& grid, const LinkingOptions& option
   network.entry_cost = birth_cost / 2;
   network.exit_cost = birth_cost - network.entry_cost;
   network.node_cost = NodeCost(options.clip);
-  network.access.assign(grid.access.begin(), grid.access.end());
   network.obstacle.assign(grid.obstacle.begin(), grid.obstacle.end());
-  network.obstacle.resize(network.cells(), 0);
+  network.obstacle.resize(grid.access.size(), 0);
+  for (const std::uint8_t access : grid.access) {
+    const Cost extra = access != 0           ? 0
+                       : options.inside_cost ? ToUnits(*options.inside_cost)
+                                             : kNever;
+    network.entry_costs.push_back(std::min(network.entry_cost + extra, kNever));
+    network.exit_costs.push_back(std::min(network.exit_cost + extra, kNever));
+  }
   return network;
 }
 

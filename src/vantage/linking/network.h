@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct Move {
   Cost cost = 0;  ///< at least 0
 };
 
+inline constexpr Cost kNever = std::numeric_limits<Cost>::max() / 4;
+
 /// What all frames of the layered graph have in common. Nodes are cells at an instant; moves lead
 /// to the next frame. No arc is stored.
 struct Network {
@@ -35,11 +38,13 @@ struct Network {
   /// What a path pays where it begins and where it ends; together the birth cost.
   Cost entry_cost = 0;
   Cost exit_cost = 0;
+  /// The same by cell for frames in which paths may not begin and end everywhere; kNever where they
+  /// may not at all.
+  std::vector<Cost> entry_costs, exit_costs;
   NodeCost node_cost{0.25};
-  std::vector<std::uint8_t> access;    ///< by cell
   std::vector<std::uint8_t> obstacle;  ///< by cell
 
-  std::size_t cells() const { return access.size(); }
+  std::size_t cells() const { return obstacle.size(); }
   std::size_t Cell(int column, int row) const {
     return static_cast<std::size_t>(column) +
            static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);

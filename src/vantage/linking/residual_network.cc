@@ -57,15 +57,21 @@ Result<ResidualNetwork> ResidualNetwork::Create(const LinkingProblem& problem,
 }
 
 bool ResidualNetwork::IsEntrance(Node node) const {
-  const Node cell = node % cells_;
-  if (network_.obstacle[cell] != 0) return false;
-  return network_.access[cell] != 0 || (from_beginning_ && node < cells_);
+  return network_.obstacle[node % cells_] == 0 && EntryCost(node) < kNever;
+}
+
+Cost ResidualNetwork::EntryCost(Node node) const {
+  return from_beginning_ && node < cells_ ? network_.entry_cost
+                                          : network_.entry_costs[node % cells_];
+}
+
+Cost ResidualNetwork::ExitCost(Node node) const {
+  return to_end_ && node >= node_count() - cells_ ? network_.exit_cost
+                                                  : network_.exit_costs[node % cells_];
 }
 
 bool ResidualNetwork::IsExit(Node node) const {
-  const Node cell = node % cells_;
-  if (network_.obstacle[cell] != 0) return false;
-  return network_.access[cell] != 0 || (to_end_ && node >= node_count() - cells_);
+  return network_.obstacle[node % cells_] == 0 && ExitCost(node) < kNever;
 }
 
 Status ResidualNetwork::Occupy(const std::vector<LinkedPath>& paths) {
@@ -141,13 +147,13 @@ template <class Visit>
 void ResidualNetwork::ForEachArc(Vertex vertex, const Visit& visit) const {
   if (vertex == source()) {
     for (const Node node : entrances_) {
-      if (previous_[node] != kEdge) visit(In(node), network_.entry_cost);
+      if (previous_[node] != kEdge) visit(In(node), EntryCost(node));
     }
     if (path_count_ > 0) visit(sink(), Cost{0});
     return;
   }
   if (vertex == sink()) {
-    for (const Node node : lasts_) visit(Out(node), -network_.exit_cost);
+    for (const Node node : lasts_) visit(Out(node), -ExitCost(node));
     if (may_add_) visit(source(), Cost{0});
     return;
   }
@@ -159,7 +165,7 @@ void ResidualNetwork::ForEachArc(Vertex vertex, const Visit& visit) const {
     if (previous == kFree) {
       visit(Out(node), cost);
     } else if (previous == kEdge) {
-      visit(source(), -network_.entry_cost);
+      visit(source(), -EntryCost(node));
     } else if (previous != kBeyond) {
       visit(Out(previous), -MoveCost(static_cast<CellIndex>(previous % cells_),
                                      static_cast<CellIndex>(node % cells_)));
@@ -167,7 +173,7 @@ void ResidualNetwork::ForEachArc(Vertex vertex, const Visit& visit) const {
     return;
   }
   if (previous != kFree) visit(In(node), -cost);
-  if (IsExit(node) && next_[node] != kEdge) visit(sink(), network_.exit_cost);
+  if (IsExit(node) && next_[node] != kEdge) visit(sink(), ExitCost(node));
   if (network_.obstacle[node % cells_] != 0) return;
   ForEachMove(node, [&](Node to, Cost move_cost) {
     if (to != next_[node]) visit(In(to), move_cost);

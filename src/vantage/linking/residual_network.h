@@ -41,7 +41,9 @@ class ResidualNetwork {
   Node NodeAt(std::int64_t frame, CellIndex cell) const {
     return static_cast<Node>((frame - first_) * cells_) + static_cast<Node>(cell);
   }
-  const Network& network() const { return network_; }
+  /// kNever where paths may not begin or end.
+  Cost EntryCost(Node node) const;
+  Cost ExitCost(Node node) const;
   Cost NodeCostAt(Node node) const { return node_cost_[node]; }
   Cost MoveCost(CellIndex from, CellIndex to) const;
 

@@ -120,7 +120,9 @@ Result<StreamLinker> StreamLinker::Create(const StreamGrid& grid, const LinkingO
         "linking.max_paths is {}, and the paths of a stream are not known at once; leave it at 0",
         options.max_paths);
   }
-  VANTAGE_ASSIGN_OR_RETURN(linking::Network network, linking::MakeNetwork(grid, options));
+  LinkingOptions stream_options = options;
+  stream_options.inside_cost = options.inside_cost.value_or(kInsideCostOfStreams);
+  VANTAGE_ASSIGN_OR_RETURN(linking::Network network, linking::MakeNetwork(grid, stream_options));
   return StreamLinker(std::make_unique<State>(std::move(network), lag_frames));
 }
 

@@ -23,6 +23,9 @@ struct StreamPosition {
   friend bool operator==(const StreamPosition&, const StreamPosition&) = default;
 };
 
+/// LinkingOptions::inside_cost where nothing else is said.
+inline constexpr double kInsideCostOfStreams = 45;
+
 /// Where all paths are in one frame; by path id.
 struct StreamFrame {
   std::int64_t frame = 0;
@@ -52,9 +55,10 @@ struct StreamReport {
 
 /// Links a stream with a fixed lag in bounded memory: the positions of a frame are final once
 /// `lag_frames` >= 1 further frames are known. At every moment the paths through the frames that
-/// are not final are the exact optimum (as LinkPaths has it, a path being free to end in the last
-/// frame) among all that continue the final ones; with a lag of the whole recording the answer is
-/// that of LinkPaths. A frame costs time in proportion to what changes in the last frames.
+/// are not final are the exact optimum among all that continue the final ones, where a path that
+/// reaches the newest frame has not paid for its end yet (half of the birth cost: nobody knows
+/// whether it ends there). With a lag of the whole recording the answer is that of LinkPaths, given
+/// the same inside_cost. A frame costs time in proportion to what changes in the last frames.
 class StreamLinker {
  public:
   /// Fails on options out of range, sizes that do not fit, lag_frames < 1, and options.max_paths >

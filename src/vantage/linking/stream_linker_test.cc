@@ -21,8 +21,8 @@
 namespace vantage {
 namespace {
 
-using testing::Access;
 using testing::Blocked;
+using testing::EdgeUnits;
 using ::testing::HasSubstr;
 using testing::Instance;
 using testing::MayMove;
@@ -34,6 +34,8 @@ using testing::Units;
 Instance StreamInstance(unsigned seed, const testing::Limits& limits = {}) {
   Instance instance = RandomInstance(seed, limits);
   instance.options.max_paths = 0;
+  // Never, as it is for LinkPaths when nothing is said; a stream has another default.
+  if (!instance.options.inside_cost) instance.options.inside_cost = 1e6;
   return instance;
 }
 
@@ -122,9 +124,9 @@ std::int64_t BestContinuation(const Instance& instance, int first, int last,
     if (Blocked(instance, cell)) return;
     path.nodes |= std::uint64_t{1} << ((frame - first) * instance.cells() + cell);
     path.cost += NodeUnits(instance, frame, cell);
-    if (frame == last || Access(instance, cell)) {
+    if (const auto exit = EdgeUnits(instance, cell, frame == last)) {
       Path ended = path;
-      if (frame < last) ended.cost += birth - birth / 2;
+      if (frame < last) ended.cost += *exit + birth - birth / 2;
       all.push_back(ended);
     }
     if (frame == last) return;
@@ -135,7 +137,9 @@ std::int64_t BestContinuation(const Instance& instance, int first, int last,
   };
   for (int frame = first; frame <= last; ++frame) {
     for (int cell = 0; cell < instance.cells(); ++cell) {
-      if (frame == 0 || Access(instance, cell)) extend(frame, cell, {0, birth / 2, 0});
+      if (const auto entry = EdgeUnits(instance, cell, frame == 0)) {
+        extend(frame, cell, {0, *entry + birth / 2, 0});
+      }
     }
   }
   for (std::size_t i = 0; i < held.size(); ++i) {
@@ -169,12 +173,14 @@ std::int64_t OpenCost(const Instance& instance, const std::vector<StreamFrame>& 
       if (const auto at = before.find(path); at != before.end()) {
         cost += MoveUnits(instance, at->second, cell);
       } else if (path > last_id) {
-        cost += birth / 2;
+        cost += birth / 2 + EdgeUnits(instance, cell, frame.frame == 0).value();
       }
       before.erase(path);
       now.emplace(path, cell);
     }
-    cost += std::ssize(before) * (birth - birth / 2);  // who ended
+    for (const auto& [path, cell] : before) {  // who ended
+      cost += birth - birth / 2 + EdgeUnits(instance, cell, false).value();
+    }
     before = std::move(now);
   }
   return cost;

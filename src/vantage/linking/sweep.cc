@@ -19,7 +19,7 @@ double AsDouble(Cost distance) {
 Sweep::Sweep(const Network& network, NodeStore& nodes)
     : network_(network),
       nodes_(nodes),
-      access_(static_cast<std::size_t>(network.rows)),
+      edge_(static_cast<std::size_t>(network.columns)),
       obstacles_(static_cast<std::size_t>(network.rows)),
       frames_(static_cast<std::size_t>(nodes.end_frame() - nodes.first_frame())),
       all_(static_cast<std::size_t>(network.rows), Stretch{0, network.columns}),
@@ -33,7 +33,6 @@ Sweep::Sweep(const Network& network, NodeStore& nodes)
   for (int row = 0; row < network.rows; ++row) {
     for (int column = 0; column < network.columns; ++column) {
       const std::size_t cell = network.Cell(column, row);
-      if (network.access[cell] != 0) access_[static_cast<std::size_t>(row)].push_back(column);
       if (network.obstacle[cell] != 0) obstacles_[static_cast<std::size_t>(row)].push_back(column);
     }
   }
@@ -77,14 +76,13 @@ void Sweep::SetPotentialsOf(Node& node) {
 template <Side kNear>
 void Sweep::StartCarriers(Targets targets) {
   constexpr Side kFarSide = Other(kNear);
-  const Cost edge_cost = kFarSide == kOut ? network_.exit_cost : network_.entry_cost;
   near_edge_ = targets == Targets::kImbalances ? 0 : kFar;
   for (std::int64_t step = 0; step < frame_count(); ++step) {
     nodes_.ForEach(FrameAt<kNear>(step), [&](NodeId id) {
       Node& node = nodes_[id];
       node.distance[kNear] = kUnreached;
       node.distance[kFarSide] = node.link[kFarSide] == kOpen     ? 0
-                                : node.link[kFarSide] == kToEdge ? -edge_cost
+                                : node.link[kFarSide] == kToEdge ? -EdgeCost(node, kFarSide)
                                                                  : kUnreached;
     });
   }
@@ -152,28 +150,35 @@ void Sweep::DoFrame(std::int64_t step, std::span<const Stretch> todo) {
 /// Distances on the far side as if no node carried flow.
 template <Side kNear>
 void Sweep::DoStretch(std::int64_t step, int row, Stretch stretch, double* out) {
-  const double edge =
-      near_edge_ + static_cast<double>(kNear == kOut ? network_.exit_cost : network_.entry_cost);
+  const auto begin = static_cast<std::size_t>(stretch.begin);
+  const auto end = static_cast<std::size_t>(stretch.end);
+  const std::vector<Cost>& edge_costs = kNear == kOut ? network_.exit_costs : network_.entry_costs;
+  const Cost everywhere = kNear == kOut ? network_.exit_cost : network_.entry_cost;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Cost cost = step == 0 ? everywhere : edge_costs[network_.Cell(0, row) + i];
+    edge_[i] = cost == kNever ? kFar : near_edge_ + static_cast<double>(cost);
+  }
   const std::int32_t* const costs =
       nodes_.Costs(FrameAt<kNear>(step)).data() + network_.Cell(0, row);
+  const std::size_t place = network_.Padded(stretch.begin, row);
+  const double* const ahead = step == 0 ? nullptr : At(FrameAt<kNear>(step - 1)).far.data() + place;
+  StepRow(ahead, step == 0 ? std::span<const KernelMove>() : moves_, edge_.data() + begin,
+          costs + begin, end - begin, most_, out + place);
   double* const out_row = out + network_.Padded(0, row);
-  if (step == 0) {
-    for (int i = stretch.begin; i < stretch.end; ++i) out_row[i] = std::min(edge + costs[i], most_);
-  } else {
-    const std::vector<double>& ahead = At(FrameAt<kNear>(step - 1)).far;
-    StepRow(ahead.data() + network_.Padded(stretch.begin, row), moves_, costs + stretch.begin,
-            static_cast<std::size_t>(stretch.end - stretch.begin), most_, out_row + stretch.begin);
-    for (const int i : access_[static_cast<std::size_t>(row)]) {
-      if (i >= stretch.begin && i < stretch.end) out_row[i] = std::min(out_row[i], edge + costs[i]);
-    }
-  }
   for (const int i : obstacles_[static_cast<std::size_t>(row)]) out_row[i] = kFar;
+}
+
+Cost Sweep::EdgeCost(const Node& node, Side side) const {
+  const std::size_t cell = network_.Cell(node.column, node.row);
+  if (side == kIn) {
+    return node.frame == nodes_.first_frame() ? network_.entry_cost : network_.entry_costs[cell];
+  }
+  return node.frame + 1 == nodes_.end_frame() ? network_.exit_cost : network_.exit_costs[cell];
 }
 
 template <Side kNear>
 bool Sweep::FollowPaths(Targets targets) {
   constexpr Side kFarSide = Other(kNear);
-  const Cost edge_cost = kNear == kOut ? network_.exit_cost : network_.entry_cost;
   bool any_fell = false;
   for (std::int64_t step = frame_count() - 1; step >= 0; --step) {
     const std::int64_t frame = FrameAt<kNear>(step);
@@ -196,7 +201,7 @@ bool Sweep::FollowPaths(Targets targets) {
         }
       }
       if (targets == Targets::kBeginnings && node.link[kNear] == kToEdge) {
-        const double edge = static_cast<double>(node.distance[kNear] - edge_cost);
+        const double edge = static_cast<double>(node.distance[kNear] - EdgeCost(node, kNear));
         if (edge < near_edge_) {
           near_edge_ = edge;
           near_edge_fell_ = any_fell = true;

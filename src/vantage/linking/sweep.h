@@ -92,11 +92,13 @@ class Sweep {
   bool FollowPaths(Targets targets);
   template <Side kNear>
   void SetPotentialsOf(Node& node);
+  /// Of the arc between the node and the edge.
+  Cost EdgeCost(const Node& node, Side side) const;
 
   const Network& network_;
   NodeStore& nodes_;
   std::vector<KernelMove> moves_;
-  std::vector<std::vector<int>> access_;     // by row: columns
+  std::vector<double> edge_;                 // of one row: of the arcs between near and edge
   std::vector<std::vector<int>> obstacles_;  // by row: columns
   std::vector<Frame> frames_;
   std::vector<Stretch> all_, todo_;  // by row

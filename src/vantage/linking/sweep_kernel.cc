@@ -20,15 +20,15 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMove> moves,
-                     const std::int32_t* HWY_RESTRICT cost, std::size_t count, double most,
-                     double* HWY_RESTRICT out) {
+                     const double* HWY_RESTRICT edge, const std::int32_t* HWY_RESTRICT cost,
+                     std::size_t count, double most, double* HWY_RESTRICT out) {
   const hn::ScalableTag<double> d;
   const hn::Rebind<std::int32_t, decltype(d)> d32;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
-    auto least = hn::Add(hn::LoadU(d, ahead + i + moves[0].offset), hn::Set(d, moves[0].cost));
-    for (std::size_t m = 1; m < moves.size(); ++m) {
+    auto least = hn::LoadU(d, edge + i);
+    for (std::size_t m = 0; m < moves.size(); ++m) {
       const auto value = hn::LoadU(d, ahead + i + moves[m].offset);
       least = hn::Min(least, hn::Add(value, hn::Set(d, moves[m].cost)));
     }
@@ -36,8 +36,8 @@ void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMov
     hn::StoreU(hn::Min(value, hn::Set(d, most)), d, out + i);
   }
   for (; i < count; ++i) {
-    double least = ahead[static_cast<std::ptrdiff_t>(i) + moves[0].offset] + moves[0].cost;
-    for (const KernelMove& move : moves.subspan(1)) {
+    double least = edge[i];
+    for (const KernelMove& move : moves) {
       const double value = ahead[static_cast<std::ptrdiff_t>(i) + move.offset] + move.cost;
       least = value < least ? value : least;
     }
@@ -54,9 +54,9 @@ namespace vantage::linking {
 
 HWY_EXPORT(StepRowOnTarget);
 
-void StepRow(const double* ahead, std::span<const KernelMove> moves, const std::int32_t* cost,
-             std::size_t count, double most, double* out) {
-  HWY_DYNAMIC_DISPATCH(StepRowOnTarget)(ahead, moves, cost, count, most, out);
+void StepRow(const double* ahead, std::span<const KernelMove> moves, const double* edge,
+             const std::int32_t* cost, std::size_t count, double most, double* out) {
+  HWY_DYNAMIC_DISPATCH(StepRowOnTarget)(ahead, moves, edge, cost, count, most, out);
 }
 
 }  // namespace vantage::linking

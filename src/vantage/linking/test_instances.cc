@@ -81,6 +81,7 @@ Instance RandomInstance(unsigned seed, const Limits& limits) {
   instance.options.clip = random.Chance(0.5) ? 1e-6 : 0.05;
   instance.options.movement_cost = random.Chance(0.5) ? 0 : 2 * random.Unit();
   instance.options.max_paths = random.Chance(0.7) ? 0 : random.Int(1, 3);
+  if (random.Chance(0.4)) instance.options.inside_cost = 10 * random.Unit();
   return instance;
 }
 
@@ -94,6 +95,12 @@ std::int64_t NodeUnits(const Instance& instance, int frame, int cell) {
 
 bool Access(const Instance& instance, int cell) {
   return instance.access[static_cast<std::size_t>(cell)] != 0;
+}
+
+std::optional<std::int64_t> EdgeUnits(const Instance& instance, int cell, bool free_frame) {
+  if (free_frame || Access(instance, cell)) return 0;
+  if (!instance.options.inside_cost) return std::nullopt;
+  return Units(*instance.options.inside_cost);
 }
 
 bool Blocked(const Instance& instance, int cell) {
@@ -123,10 +130,12 @@ std::int64_t CheckPaths(const Instance& instance, const std::vector<LinkedPath>&
     const std::pair begin(path.first_frame, path.cells.front());
     EXPECT_LT(previous, begin) << "not in order";
     previous = begin;
-    EXPECT_TRUE(path.first_frame == 0 || Access(instance, path.cells.front()));
+    const auto entry = EdgeUnits(instance, path.cells.front(), path.first_frame == 0);
     const std::int64_t end = path.first_frame + std::ssize(path.cells);
     EXPECT_LE(end, instance.frames);
-    EXPECT_TRUE(end == instance.frames || Access(instance, path.cells.back()));
+    const auto exit = EdgeUnits(instance, path.cells.back(), end == instance.frames);
+    EXPECT_TRUE(entry && exit);
+    cost += entry.value_or(0) + exit.value_or(0);
     for (std::size_t i = 0; i < path.cells.size(); ++i) {
       const CellIndex cell = path.cells[i];
       const std::int64_t frame = path.first_frame + static_cast<std::int64_t>(i);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,8 @@ std::int64_t NodeUnits(const Instance& instance, int frame, int cell);
 std::int64_t MoveUnits(const Instance& instance, int from, int to);
 
 bool Access(const Instance& instance, int cell);
+/// What a path pays to begin or end at the cell, besides the birth cost; none: it may not.
+std::optional<std::int64_t> EdgeUnits(const Instance& instance, int cell, bool free_frame);
 bool Blocked(const Instance& instance, int cell);
 bool MayMove(const Instance& instance, int from, int to);
 
