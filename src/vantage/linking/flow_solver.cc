@@ -92,8 +92,8 @@ void FlowSolver::SetFirstPotentials() {
 }
 
 bool FlowSolver::Settle(const RunControl& control) {
-  if (effort_.first_sweep > 0) SweepPotentials<kOut>(effort_.first_sweep * kUnitsPerCost);
-  if (!SettleAll<kOut>(control) || !SettleAll<kIn>(control)) return false;
+  if (effort_.first_sweep > 0) SweepPotentials<kIn>(effort_.first_sweep * kUnitsPerCost);
+  if (!SettleAll<kIn>(control) || !SettleAll<kOut>(control)) return false;
   open_.clear();
   return true;
 }
@@ -101,7 +101,7 @@ bool FlowSolver::Settle(const RunControl& control) {
 template <Side kNear>
 bool FlowSolver::SettleAll(const RunControl& control) {
   const std::int64_t frames = nodes_.end_frame() - nodes_.first_frame();
-  const std::int64_t frames_before = kNear == kOut ? 0 : frames;
+  const std::int64_t frames_before = kNear == kIn ? 0 : frames;
   std::int64_t reported = -1;
   std::vector<Vertex> waiting;
   const auto settle = [&](NodeId id) {
