@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+constexpr double kFarthest = 0x1p40;
 constexpr std::int64_t kExpansionsBetweenStopChecks = 1 << 14;
 
 template <Side kNear>
@@ -127,8 +128,12 @@ bool FlowSolver::SettleAll(const RunControl& control) {
   const auto between_sweeps =
       static_cast<std::int64_t>(effort_.share_between_sweeps * static_cast<double>(nodes));
   expansions_ = between_sweeps;
+  double reach = effort_.second_sweep * kUnitsPerCost;
   for (const Vertex vertex : waiting) {
-    if (expansions_ >= between_sweeps) SweepPotentials<kNear>(kEverywhere);
+    if (expansions_ >= between_sweeps) {
+      SweepPotentials<kNear>(reach);
+      reach = reach < kFarthest ? 2 * reach : kEverywhere;
+    }
     const QueueEntry start = Entry<kNear>(0, vertex);
     if (Search<kNear>(std::span(&start, 1), kUnlimited, control) == Outcome::kStopped) return false;
   }
@@ -197,10 +202,8 @@ FlowSolver::Outcome FlowSolver::Search(std::span<const QueueEntry> starts,
 }
 
 template <Side kNear>
-void FlowSolver::SweepPotentials(double most) {
-  const Cost near_edge = Sweep(network_, nodes_).SetPotentials<kNear>(targets_, most);
-  edge_potential_[kNear] = -Mirror<kNear>(near_edge);
-  edge_potential_[Other(kNear)] = 0;
+void FlowSolver::SweepPotentials(double reach) {
+  Sweep(network_, nodes_).SetPotentials<kNear>(targets_, reach, edge_potential_);
   expansions_ = 0;
 }
 
@@ -355,6 +358,55 @@ void FlowSolver::DropFrame() {
     if (IsNode(nodes_[id].link[kOut])) nodes_[nodes_[id].link[kOut]].link[kIn] = kFinal;
   });
   nodes_.DropFrame();
+}
+
+Cost FlowSolver::LeastReducedCost() const {
+  Cost least = kUnreached;
+  // The node at a place, touched or not.
+  const auto node_at = [this](std::int64_t frame, int column, int row) {
+    const NodeId id = nodes_.Find(frame, column, row);
+    if (id != kNoNode) return nodes_[id];
+    Node node = {.frame = static_cast<std::int32_t>(frame),
+                 .column = static_cast<std::int16_t>(column),
+                 .row = static_cast<std::int16_t>(row),
+                 .cost = nodes_.CostOf(frame, column, row)};
+    for (const Side side : {kIn, kOut}) {
+      node.potential[side] = nodes_.PotentialOf(frame, column, row, side);
+    }
+    return node;
+  };
+  const auto arc = [&least](bool carries, Cost cost, Cost from, Cost to) {
+    const Cost reduced = cost + from - to;
+    least = std::min(least, carries ? -reduced : reduced);
+  };
+  for (std::int64_t frame = nodes_.first_frame(); frame < nodes_.end_frame(); ++frame) {
+    for (std::size_t cell = 0; cell < network_.cells(); ++cell) {
+      if (network_.obstacle[cell] != 0) continue;
+      const auto column = static_cast<int>(cell) % network_.columns;
+      const auto row = static_cast<int>(cell) / network_.columns;
+      const Node node = node_at(frame, column, row);
+      arc(node.Carries(), node.cost, node.potential[kIn], node.potential[kOut]);
+      if (const Cost cost = EdgeCost(node, kIn); cost < kNever) {
+        arc(node.link[kIn] == kToEdge, cost, edge_potential_[kIn], node.potential[kIn]);
+      }
+      if (const Cost cost = EdgeCost(node, kOut); cost < kNever) {
+        arc(node.link[kOut] == kToEdge, cost, node.potential[kOut], edge_potential_[kOut]);
+      }
+      if (frame + 1 == nodes_.end_frame()) continue;
+      for (const Move& move : network_.moves) {
+        const int to_column = column + move.columns;
+        const int to_row = row + move.rows;
+        if (!network_.Contains(to_column, to_row) ||
+            network_.obstacle[network_.Cell(to_column, to_row)] != 0) {
+          continue;
+        }
+        const NodeId to = nodes_.Find(frame + 1, to_column, to_row);
+        arc(to != kNoNode && node.link[kOut] == to, move.cost, node.potential[kOut],
+            node_at(frame + 1, to_column, to_row).potential[kIn]);
+      }
+    }
+  }
+  return least;
 }
 
 std::vector<LinkedPath> FlowSolver::Paths() const {

@@ -22,6 +22,8 @@ struct SearchEffort {
   /// Potentials before all searches are distances to the nearest target as far as this, in cost:
   /// two misses. Farther ones would mislead the searches of step 3. 0: no sweep.
   double first_sweep = 30;
+  /// Reach of the next sweep; each one after it reaches twice as far.
+  double second_sweep = 60;
   /// A target that takes more expansions of vertices than this to find is far.
   std::int64_t nearby = 2000;
   /// Searches for far targets expand so many vertices, as a share of the nodes, between sweeps.
@@ -95,6 +97,10 @@ class FlowSolver {
 
   const NodeStore& nodes() const { return nodes_; }
 
+  /// The least reduced cost of all residual arcs, which the method keeps at 0 or above. Slow; for
+  /// tests.
+  Cost LeastReducedCost() const;
+
   /// The paths, each a first node and the cells after it, in the order of first nodes. While no
   /// frame was dropped.
   std::vector<LinkedPath> Paths() const;
@@ -137,7 +143,7 @@ class FlowSolver {
   bool SettleAll(const RunControl& control);
   /// Potentials under which the reduced cost to the nearest target is 0, for searches to come.
   template <Side kNear>
-  void SweepPotentials(double most);
+  void SweepPotentials(double reach);
   template <Side kNear>
   void Expand(Vertex vertex, Cost distance);
   template <Side kNear>
@@ -165,7 +171,7 @@ class FlowSolver {
   std::vector<NodeId> open_;  // nodes with an imbalance, the oldest first
 
   // The edge is one vertex until paths are taken away; then its two sides part.
-  Cost edge_potential_[2] = {0, 0};
+  EdgePotentials edge_potential_ = {0, 0};
 
   // One search at a time.
   Targets targets_ = Targets::kImbalances;

@@ -115,10 +115,12 @@ TEST(LinkerOracle, AnyEffortFindsTheOptimum) {
          {linking::SearchEffort{.first_sweep = 0, .nearby = 1, .share_between_sweeps = 0},
           {.first_sweep = 0, .nearby = 5, .share_between_sweeps = 0.01},
           {.first_sweep = 1, .nearby = 0, .share_between_sweeps = 0.1},
-          {.first_sweep = 1000, .nearby = 5, .share_between_sweeps = 0}}) {
+          {.first_sweep = 1000, .nearby = 5, .share_between_sweeps = 0},
+          {.first_sweep = 5, .second_sweep = 1, .nearby = 2, .share_between_sweeps = 0.02}}) {
       linking::FlowSolver solver(*network, effort);
       for (int frame = 0; frame < instance.frames; ++frame) solver.AddFrame(instance.Map(frame));
       ASSERT_TRUE(solver.Settle({}));
+      ASSERT_GE(solver.LeastReducedCost(), 0);
       ASSERT_EQ(solver.TotalCost(), Units(right->report.cost));
       ASSERT_EQ(CheckPaths(instance, solver.Paths()), solver.TotalCost());
     }
@@ -138,6 +140,7 @@ TEST(LinkerOracle, FramesMayBeAddedToASettledFlow) {
     Instance so_far = instance;
     for (so_far.frames = 1; so_far.frames <= instance.frames; ++so_far.frames) {
       solver.AddFrame(instance.Map(so_far.frames - 1));
+      ASSERT_GE(solver.LeastReducedCost(), 0);
       ASSERT_TRUE(solver.Settle({}));
       so_far.probability.assign(instance.probability.begin(),
                                 instance.probability.begin() + so_far.frames * instance.cells());

@@ -141,4 +141,19 @@ void NodeStore::SetPotentials(std::int64_t frame, Side side, double sign,
   At(frame).potentials_side = side;
 }
 
+void NodeStore::GetPotentials(std::int64_t frame_number, int column, int row, Side side,
+                              std::span<double> values) {
+  const std::span<const std::int32_t> costs =
+      Costs(frame_number).subspan(network_.Cell(column, row), values.size());
+  const Frame& frame = At(frame_number);
+  if (frame.potentials.empty()) {
+    std::fill(values.begin(), values.end(), 0.0);
+    return;
+  }
+  const double* const from = frame.potentials.data() + network_.Padded(column, row);
+  const double sign = frame.potentials_sign;
+  const double cost_sign = side == frame.potentials_side ? 0 : side == kOut ? 1 : -1;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = sign * from[i] + cost_sign * costs[i];
+}
+
 }  // namespace vantage::linking

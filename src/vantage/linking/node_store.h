@@ -93,6 +93,8 @@ class NodeStore {
   /// Potentials of all nodes of a frame on one side, sign * value by padded place, for those that
   /// nobody has touched; the other side's follow from out = in + cost.
   void SetPotentials(std::int64_t frame, Side side, double sign, std::vector<double> values);
+  /// These potentials on the side that is asked for, of `count` cells of a row from `column` on.
+  void GetPotentials(std::int64_t frame, int column, int row, Side side, std::span<double> values);
 
  private:
   /// Cells of one frame to nodes, in tiles of 8 x 8 cells; where nobody came by there is no tile.

@@ -10,8 +10,13 @@ namespace vantage::linking {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-double AsDouble(Cost distance) {
-  return distance == kUnreached ? kFar : static_cast<double>(distance);
+double AsDouble(Cost label) { return label == kUnreached ? kFar : static_cast<double>(label); }
+Cost AsCost(double label) { return label == kFar ? kUnreached : static_cast<Cost>(label); }
+
+/// What its potential says.
+template <Side kNear>
+double OldLabel(const Node& node, Side side) {
+  return static_cast<double>(kNear == kOut ? -node.potential[side] : node.potential[side]);
 }
 
 }  // namespace
@@ -24,7 +29,8 @@ Sweep::Sweep(const Network& network, NodeStore& nodes)
       frames_(static_cast<std::size_t>(nodes.end_frame() - nodes.first_frame())),
       all_(static_cast<std::size_t>(network.rows), Stretch{0, network.columns}),
       todo_(all_.size()),
-      fresh_(network.padded_cells(), kFar) {
+      fresh_(network.padded_cells(), kFar),
+      most_(network.cells(), kFar) {
   for (const Move& move : network.moves) {
     moves_.push_back(
         {.offset = move.columns + move.rows * static_cast<std::ptrdiff_t>(network.padded_columns()),
@@ -39,9 +45,14 @@ Sweep::Sweep(const Network& network, NodeStore& nodes)
 }
 
 template <Side kNear>
-Cost Sweep::SetPotentials(Targets targets, double most) {
-  most_ = most;
-  StartCarriers<kNear>(targets);
+void Sweep::SetPotentials(Targets targets, double reach, EdgePotentials& edge) {
+  constexpr double kSign = kNear == kOut ? -1 : 1;  // of a label's potential
+  constexpr Side kFarSide = Other(kNear);
+  reach_ = reach;
+  far_edge_ = kSign * static_cast<double>(edge[kFarSide]);
+  near_edge_ = kSign * static_cast<double>(edge[kNear]);
+  if (targets == Targets::kBeginnings) near_edge_ += reach;
+  StartCarriers<kNear>();
   FirstPass<kNear>();
   while (FollowPaths<kNear>(targets)) {
     for (std::int64_t step = 0; step < frame_count(); ++step) {
@@ -56,10 +67,10 @@ Cost Sweep::SetPotentials(Targets targets, double most) {
   }
   for (std::int64_t step = 0; step < frame_count(); ++step) {
     const std::int64_t frame = FrameAt<kNear>(step);
-    nodes_.SetPotentials(frame, Other(kNear), kNear == kOut ? -1 : 1, std::move(At(frame).far));
+    nodes_.SetPotentials(frame, kFarSide, kSign, std::move(At(frame).far));
     nodes_.ForEach(frame, [this](NodeId id) { SetPotentialsOf<kNear>(nodes_[id]); });
   }
-  return static_cast<Cost>(near_edge_);
+  edge[kNear] = static_cast<Cost>(kSign * near_edge_);
 }
 
 template <Side kNear>
@@ -74,16 +85,19 @@ void Sweep::SetPotentialsOf(Node& node) {
 }
 
 template <Side kNear>
-void Sweep::StartCarriers(Targets targets) {
+void Sweep::StartCarriers() {
   constexpr Side kFarSide = Other(kNear);
-  near_edge_ = targets == Targets::kImbalances ? 0 : kFar;
   for (std::int64_t step = 0; step < frame_count(); ++step) {
     nodes_.ForEach(FrameAt<kNear>(step), [&](NodeId id) {
       Node& node = nodes_[id];
-      node.distance[kNear] = kUnreached;
-      node.distance[kFarSide] = node.link[kFarSide] == kOpen     ? 0
-                                : node.link[kFarSide] == kToEdge ? -EdgeCost(node, kFarSide)
-                                                                 : kUnreached;
+      if (!node.Carries()) return;
+      const Link link = node.link[kFarSide];
+      const double old = OldLabel<kNear>(node, kFarSide);
+      double label = link == kOpen ? old : reach_ + old;
+      if (link == kToEdge) {
+        label = std::min(label, far_edge_ - static_cast<double>(EdgeCost(node, kFarSide)));
+      }
+      node.distance[kFarSide] = AsCost(label);
     });
   }
 }
@@ -119,6 +133,7 @@ void Sweep::DoFrame(std::int64_t step, std::span<const Stretch> todo) {
   const bool first = frame.far.empty();
   if (first) frame.far.assign(network_.padded_cells(), kFar);
   std::vector<double>& fresh = first ? frame.far : fresh_;
+  SetMost<kNear>(number, todo);
   for (int row = 0; row < network_.rows; ++row) {
     const Stretch stretch = todo[static_cast<std::size_t>(row)];
     if (!stretch.empty()) DoStretch<kNear>(step, row, stretch, fresh.data());
@@ -129,9 +144,9 @@ void Sweep::DoFrame(std::int64_t step, std::span<const Stretch> todo) {
     if (!node.Carries() || node.column < stretch.begin || node.column >= stretch.end) return;
     double& far = fresh[network_.Padded(node.column, node.row)];
     // Ahead, or back over the node itself if the flow in it is taken off.
-    const double near =
-        std::min(std::min(far, AsDouble(node.distance[kFarSide])) - node.cost, most_);
-    node.distance[kNear] = near == kFar ? kUnreached : static_cast<Cost>(near);
+    const double near = std::min(std::min(far, AsDouble(node.distance[kFarSide])) - node.cost,
+                                 reach_ + OldLabel<kNear>(node, kNear));
+    node.distance[kNear] = AsCost(near);
     far = AsDouble(node.distance[kFarSide]);
   });
   if (first) return;
@@ -147,7 +162,7 @@ void Sweep::DoFrame(std::int64_t step, std::span<const Stretch> todo) {
   }
 }
 
-/// Distances on the far side as if no node carried flow.
+/// Labels on the far side as if no node carried flow.
 template <Side kNear>
 void Sweep::DoStretch(std::int64_t step, int row, Stretch stretch, double* out) {
   const auto begin = static_cast<std::size_t>(stretch.begin);
@@ -163,9 +178,30 @@ void Sweep::DoStretch(std::int64_t step, int row, Stretch stretch, double* out) 
   const std::size_t place = network_.Padded(stretch.begin, row);
   const double* const ahead = step == 0 ? nullptr : At(FrameAt<kNear>(step - 1)).far.data() + place;
   StepRow(ahead, step == 0 ? std::span<const KernelMove>() : moves_, edge_.data() + begin,
-          costs + begin, end - begin, most_, out + place);
+          costs + begin, end - begin, most_.data() + network_.Cell(stretch.begin, row),
+          out + place);
   double* const out_row = out + network_.Padded(0, row);
   for (const int i : obstacles_[static_cast<std::size_t>(row)]) out_row[i] = kFar;
+}
+
+// Never below the old labels: those of the edge, which keeps its own as a target does, allow no
+// less where paths may begin.
+template <Side kNear>
+void Sweep::SetMost(std::int64_t frame, std::span<const Stretch> todo) {
+  if (reach_ == kFar) return;
+  constexpr Side kFarSide = Other(kNear);
+  for (int row = 0; row < network_.rows; ++row) {
+    const Stretch stretch = todo[static_cast<std::size_t>(row)];
+    if (stretch.empty()) continue;
+    const std::span<double> most = std::span(most_).subspan(
+        network_.Cell(stretch.begin, row), static_cast<std::size_t>(stretch.end - stretch.begin));
+    nodes_.GetPotentials(frame, stretch.begin, row, kFarSide, most);
+    for (double& value : most) value = reach_ + (kNear == kOut ? -value : value);
+  }
+  nodes_.ForEach(frame, [&](NodeId id) {
+    const Node& node = nodes_[id];
+    most_[network_.Cell(node.column, node.row)] = reach_ + OldLabel<kNear>(node, kFarSide);
+  });
 }
 
 Cost Sweep::EdgeCost(const Node& node, Side side) const {
@@ -212,7 +248,7 @@ bool Sweep::FollowPaths(Targets targets) {
   return any_fell;
 }
 
-template Cost Sweep::SetPotentials<kIn>(Targets targets, double most);
-template Cost Sweep::SetPotentials<kOut>(Targets targets, double most);
+template void Sweep::SetPotentials<kIn>(Targets, double, EdgePotentials&);
+template void Sweep::SetPotentials<kOut>(Targets, double, EdgePotentials&);
 
 }  // namespace vantage::linking

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,36 +15,45 @@
 
 namespace vantage::linking {
 
+/// The edge's two sides; its potentials, as those of vertices.
+using EdgePotentials = std::array<Cost, 2>;
+
 /// What a sweep measures distances to.
 enum class Targets {
   kImbalances,  ///< nodes that lack a unit (or have one too many), and the edge
   kBeginnings,  ///< the edge where paths begin; paths that end there may be taken up again
 };
 
-/// Distances of all vertices to the nearest target in the residual network of a flow (see
-/// FlowSolver), by dynamic programming over whole frames: every arc once, without a queue.
+/// Distances, in reduced cost, of all vertices to the nearest target in the residual network of a
+/// flow (see FlowSolver), by dynamic programming over whole frames: every arc once, without a
+/// queue.
 ///
-/// Moves lead one frame ahead, so that one pass against time gives the distances over all arcs but
+/// It keeps labels l(u) = d(u) - y(u), d being the reduced distance and y the potential, so that
+/// the old potentials need not be added to every arc: a target has l = -y, and every residual arc
+/// u -> w demands l(u) <= cost + l(w). The new potentials are -l. Distances stop at a given reach:
+/// l(u) <= reach - y(u). Every label that is the least over a vertex's own arcs and that bound
+/// meets its demands; so do targets, since no label falls below -y.
+///
+/// Moves lead one frame ahead, so that one pass against time gives the labels over all arcs but
 /// those that the flow has reversed. These lead back along the paths, which are few: a pass in time
-/// over the nodes that carry flow relaxes them. The two alternate until nothing changes; a frame is
-/// done again only if distances in the next one fell. (With no path yet, as at first, nothing
-/// changes after the first pass.) At the end every residual arc u -> w has d(u) <= cost + d(w): the
-/// labels are shortest distances, as those of Bellman and Ford's algorithm, of which this is an
-/// order of relaxing. There is no negative cycle because the flow is optimal for its imbalances.
+/// over the nodes that carry flow relaxes them. The two alternate until nothing changes; only those
+/// cells are done again that depend on labels which fell. (With no path yet, as at first, nothing
+/// changes after the first pass.) It ends, as Bellman and Ford's algorithm does, of which this is
+/// an order of relaxing: there is no negative cycle because the flow is optimal for its imbalances.
 ///
-/// Every vertex has a target within reach: from a node that carries no flow one can stay until the
-/// last frame, an exit, or until the place is taken by a path; from a node that carries flow one
-/// can go back along its path, to a lack or to the path's entry.
+/// Every vertex has a target within reach if that is infinite: from a node that carries no flow one
+/// can stay until the last frame, an exit, or until the place is taken by a path; from a node that
+/// carries flow one can go back along its path, to a lack or to the path's entry.
 class Sweep {
  public:
   Sweep(const Network& network, NodeStore& nodes);
 
-  /// Sets all potentials to the distances, negated for kNear = kOut: then all reduced costs are at
-  /// least 0, and 0 along the shortest paths. For kNear = kIn the same in mirror image: distances
-  /// from the targets, time reversed. No frame was dropped. Returns the distance of the edge on the
-  /// side of kNear.
+  /// Sets all potentials and those of the edge: then no reduced cost is below 0, and those along
+  /// shortest paths to targets within reach (in units; may be infinite) are 0. As described for
+  /// kNear = kOut; for kNear = kIn in mirror image: distances from the targets, time reversed,
+  /// potentials negated. No frame was dropped.
   template <Side kNear>
-  Cost SetPotentials(Targets targets, double most);
+  void SetPotentials(Targets targets, double reach, EdgePotentials& edge);
 
   /// One pass over every arc: what the first round does, for measuring.
   void PassOnce();
@@ -60,7 +70,7 @@ class Sweep {
     }
   };
   struct Frame {
-    /// Distances on the far side, by padded place; infinite outside the grid and at obstacles.
+    /// Labels on the far side, by padded place; infinite outside the grid and at obstacles.
     std::vector<double> far;
     /// By row, where they fell since the next frame of a pass was done; empty: nowhere.
     std::vector<Stretch> fell;
@@ -77,7 +87,7 @@ class Sweep {
   }
 
   template <Side kNear>
-  void StartCarriers(Targets targets);
+  void StartCarriers();
   template <Side kNear>
   void FirstPass();
   /// Does the `todo` of a frame again (by row; none empty: all of it).
@@ -85,9 +95,12 @@ class Sweep {
   void DoFrame(std::int64_t step, std::span<const Stretch> todo);
   template <Side kNear>
   void DoStretch(std::int64_t step, int row, Stretch stretch, double* out);
-  /// What depends on the distances that fell in the frame before.
+  /// The labels at the reach on the far side.
+  template <Side kNear>
+  void SetMost(std::int64_t frame, std::span<const Stretch> todo);
+  /// What depends on the labels that fell in the frame before.
   std::span<const Stretch> ToDoAfter(const Frame& ahead);
-  /// Whether any distance fell.
+  /// Whether any label fell.
   template <Side kNear>
   bool FollowPaths(Targets targets);
   template <Side kNear>
@@ -103,8 +116,10 @@ class Sweep {
   std::vector<Frame> frames_;
   std::vector<Stretch> all_, todo_;  // by row
   std::vector<double> fresh_;        // of one frame, by padded place
-  double most_ = 0;
-  double near_edge_ = 0;
+  std::vector<double> most_;         // of one frame, by cell: labels at the reach
+  double reach_ = 0;
+  double near_edge_ = 0;  // the edge's labels
+  double far_edge_ = 0;
   bool near_edge_fell_ = false;
 };
 

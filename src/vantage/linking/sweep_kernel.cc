@@ -21,7 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMove> moves,
                      const double* HWY_RESTRICT edge, const std::int32_t* HWY_RESTRICT cost,
-                     std::size_t count, double most, double* HWY_RESTRICT out) {
+                     std::size_t count, const double* HWY_RESTRICT most, double* HWY_RESTRICT out) {
   const hn::ScalableTag<double> d;
   const hn::Rebind<std::int32_t, decltype(d)> d32;
   const std::size_t lanes = hn::Lanes(d);
@@ -33,7 +33,7 @@ void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMov
       least = hn::Min(least, hn::Add(value, hn::Set(d, moves[m].cost)));
     }
     const auto value = hn::Add(least, hn::PromoteTo(d, hn::LoadU(d32, cost + i)));
-    hn::StoreU(hn::Min(value, hn::Set(d, most)), d, out + i);
+    hn::StoreU(hn::Min(value, hn::LoadU(d, most + i)), d, out + i);
   }
   for (; i < count; ++i) {
     double least = edge[i];
@@ -41,7 +41,7 @@ void StepRowOnTarget(const double* HWY_RESTRICT ahead, std::span<const KernelMov
       const double value = ahead[static_cast<std::ptrdiff_t>(i) + move.offset] + move.cost;
       least = value < least ? value : least;
     }
-    out[i] = std::min(least + cost[i], most);
+    out[i] = std::min(least + cost[i], most[i]);
   }
 }
 
@@ -55,7 +55,7 @@ namespace vantage::linking {
 HWY_EXPORT(StepRowOnTarget);
 
 void StepRow(const double* ahead, std::span<const KernelMove> moves, const double* edge,
-             const std::int32_t* cost, std::size_t count, double most, double* out) {
+             const std::int32_t* cost, std::size_t count, const double* most, double* out) {
   HWY_DYNAMIC_DISPATCH(StepRowOnTarget)(ahead, moves, edge, cost, count, most, out);
 }
 

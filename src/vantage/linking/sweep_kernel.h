@@ -17,9 +17,9 @@ struct KernelMove {
 };
 
 /// One step of the dynamic program along a row: out[i] = cost[i] + the least of edge[i] and, over
-/// the moves m, ahead[i + m.offset] + m.cost; and `most` at most. Exact, for integers below 2^53.
+/// the moves m, ahead[i + m.offset] + m.cost; and most[i] at most. Exact, for integers below 2^53.
 /// Vector code, the best instruction set at run time.
 void StepRow(const double* ahead, std::span<const KernelMove> moves, const double* edge,
-             const std::int32_t* cost, std::size_t count, double most, double* out);
+             const std::int32_t* cost, std::size_t count, const double* most, double* out);
 
 }  // namespace vantage::linking
