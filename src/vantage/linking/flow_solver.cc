@@ -93,7 +93,7 @@ void FlowSolver::SetFirstPotentials() {
 }
 
 bool FlowSolver::Settle(const RunControl& control) {
-  if (effort_.first_sweep > 0) SweepPotentials<kIn>(effort_.first_sweep * kUnitsPerCost);
+  if (effort_.reach > 0) SweepPotentials<kIn>(effort_.reach * kUnitsPerCost);
   if (!SettleAll<kIn>(control) || !SettleAll<kOut>(control)) return false;
   open_.clear();
   return true;
@@ -128,9 +128,9 @@ bool FlowSolver::SettleAll(const RunControl& control) {
   const auto between_sweeps =
       static_cast<std::int64_t>(effort_.share_between_sweeps * static_cast<double>(nodes));
   expansions_ = between_sweeps;
-  double reach = effort_.second_sweep * kUnitsPerCost;
+  double reach = effort_.reach * kUnitsPerCost;
   for (const Vertex vertex : waiting) {
-    if (expansions_ >= between_sweeps) {
+    if (effort_.reach > 0 && expansions_ >= between_sweeps) {
       SweepPotentials<kNear>(reach);
       reach = reach < kFarthest ? 2 * reach : kEverywhere;
     }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,21 +16,20 @@
 
 namespace vantage::linking {
 
-/// How the work is divided: changes the time taken, never the optimum.
+/// How the work is divided between searches and sweeps: changes the time taken, never the optimum.
+/// Chosen on simulated rooms, halls and crowds.
 struct SearchEffort {
-  /// Potentials before all searches are distances to the nearest target as far as this, in cost:
-  /// two misses. Farther ones would mislead the searches of step 3. 0: no sweep.
-  double first_sweep = 30;
-  /// Reach of the next sweep; each one after it reaches twice as far.
-  double second_sweep = 60;
+  /// Reach of the sweep before all searches, in cost: two misses or a few more. Farther labels
+  /// would mislead the searches of step 3. Of the sweeps in a step for far targets the first
+  /// reaches as far, each one after it twice as far. 0: no sweeps.
+  double reach = 30;
   /// A target that takes more expansions of vertices than this to find is far.
-  std::int64_t nearby = 2000;
+  std::int64_t nearby = 200;
   /// Searches for far targets expand so many vertices, as a share of the nodes, between sweeps.
-  double share_between_sweeps = 0.02;
+  double share_between_sweeps = 0.1;
 };
 /// For streams: a sweep speaks for the frames that are here, not for those to come.
-inline constexpr SearchEffort kNoSweeps = {.first_sweep = 0,
-                                           .nearby = std::numeric_limits<std::int64_t>::max()};
+inline constexpr SearchEffort kNoSweeps = {.reach = 0};
 
 /// Minimum-cost flow on a layered graph by successive shortest paths (Ahuja, Magnanti, Orlin,
 /// "Network Flows", 1993, section 9.7), begun from the nodes instead of from the source.

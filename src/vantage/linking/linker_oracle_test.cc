@@ -112,11 +112,10 @@ TEST(LinkerOracle, AnyEffortFindsTheOptimum) {
         linking::MakeNetwork(instance.grid(), instance.options);
     ASSERT_TRUE(network);
     for (const linking::SearchEffort& effort :
-         {linking::SearchEffort{.first_sweep = 0, .nearby = 1, .share_between_sweeps = 0},
-          {.first_sweep = 0, .nearby = 5, .share_between_sweeps = 0.01},
-          {.first_sweep = 1, .nearby = 0, .share_between_sweeps = 0.1},
-          {.first_sweep = 1000, .nearby = 5, .share_between_sweeps = 0},
-          {.first_sweep = 5, .second_sweep = 1, .nearby = 2, .share_between_sweeps = 0.02}}) {
+         {linking::SearchEffort{.reach = 0, .nearby = 5},
+          {.reach = 1, .nearby = 0, .share_between_sweeps = 0},
+          {.reach = 5, .nearby = 2, .share_between_sweeps = 0.02},
+          {.reach = 1000, .nearby = 5, .share_between_sweeps = 0}}) {
       linking::FlowSolver solver(*network, effort);
       for (int frame = 0; frame < instance.frames; ++frame) solver.AddFrame(instance.Map(frame));
       ASSERT_TRUE(solver.Settle({}));
