@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/pipeline/recent_tracks.h"
 
+#include <map>
 #include <utility>
+#include <vector>
 
-#include "vantage/linking/link_maps.h"
+#include "vantage/linking/access.h"
 
 namespace vantage {
 
 RecentTracks::RecentTracks(const OccupancyMaps& like, std::int64_t window_frames,
-                           const LinkingOptions& linking, const TrackOptions& tracks,
-                           std::vector<Polygon> doors, std::vector<Polygon> obstacles)
+                           StreamLinker linker, const TrackOptions& tracks)
     : window_{.grid = like.grid,
               .first_frame = like.first_frame,
               .frames_per_second = like.frames_per_second,
@@ -18,27 +19,57 @@ RecentTracks::RecentTracks(const OccupancyMaps& like, std::int64_t window_frames
               .visible = like.visible,
               .values = {}},
       window_frames_(window_frames),
-      linking_(linking),
-      tracks_(tracks),
-      doors_(std::move(doors)),
-      obstacles_(std::move(obstacles)) {
+      linker_(std::move(linker)),
+      tracks_(tracks) {
   tracks_.smoothing_secs = 0;
   tracks_.min_length_secs = 0;
 }
 
-void RecentTracks::Add(std::span<const float> maps) {
+Result<RecentTracks> RecentTracks::Create(const OccupancyMaps& like, std::int64_t window_frames,
+                                          const LinkingOptions& linking, const TrackOptions& tracks,
+                                          std::span<const Polygon> doors,
+                                          std::span<const Polygon> obstacles) {
+  const std::vector<std::uint8_t> access = AccessCells(like, linking.access, doors);
+  const std::vector<std::uint8_t> obstacle = CellsIn(like.grid, obstacles);
+  VANTAGE_ASSIGN_OR_RETURN(StreamLinker linker,
+                           StreamLinker::Create({.columns = like.grid.columns,
+                                                 .rows = like.grid.rows,
+                                                 .access = access,
+                                                 .obstacle = obstacle,
+                                                 .cell_m = like.grid.cell_m,
+                                                 .frames_per_second = like.frames_per_second},
+                                                linking, window_frames));
+  return RecentTracks(like, window_frames, std::move(linker), tracks);
+}
+
+Status RecentTracks::Add(std::span<const float> maps) {
+  const auto cells = static_cast<std::size_t>(window_.grid.count());
+  for (std::size_t i = 0; i < maps.size(); i += cells) {
+    const auto settled = linker_.Add(maps.subspan(i, cells));
+    if (!settled) return tl::unexpected(settled.error());
+  }
   std::vector<float>& values = window_.values;
   values.insert(values.end(), maps.begin(), maps.end());
   const std::int64_t left = window_.frame_count() - window_frames_;
-  if (left <= 0) return;
+  if (left <= 0) return {};
   values.erase(values.begin(), values.begin() + left * window_.grid.count());
   window_.first_frame += left;
+  return {};
 }
 
 Result<Tracks> RecentTracks::Link() const {
-  VANTAGE_ASSIGN_OR_RETURN(LinkMapsResult linked,
-                           LinkMaps(window_, linking_, tracks_, doors_, obstacles_));
-  return std::move(linked.tracks);
+  std::map<PathId, LinkedPath> by_id;
+  std::int64_t frame = 0;  // of the window
+  for (const StreamFrame& tentative : linker_.Tentative()) {
+    for (const StreamPosition& position : tentative.positions) {
+      LinkedPath& path = by_id.try_emplace(position.path, LinkedPath{frame, {}}).first->second;
+      path.cells.push_back(position.cell);
+    }
+    ++frame;
+  }
+  std::vector<LinkedPath> paths;
+  for (auto& [id, path] : by_id) paths.push_back(std::move(path));
+  return BuildTracks(paths, window_, tracks_);
 }
 
 }  // namespace vantage

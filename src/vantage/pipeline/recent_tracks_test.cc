@@ -34,18 +34,19 @@ TEST(RecentTracks, AreThoseOfTheLastMapsHoweverTheyCome) {
   const OccupancyMaps all = TwoPeople(50);
   const std::size_t cells = static_cast<std::size_t>(all.grid.count());
   for (const std::size_t step : {1U, 8U, 30U}) {
-    RecentTracks recent(all, kWindow, {}, {}, {}, {});
+    auto recent = RecentTracks::Create(all, kWindow, {}, {}, {}, {});
+    ASSERT_TRUE(recent) << MessageOf(recent);
     for (std::size_t frame = 0; frame < 50; frame += step) {
       const std::size_t end = std::min<std::size_t>(frame + step, 50);
-      recent.Add(std::span(all.values).subspan(frame * cells, (end - frame) * cells));
-      EXPECT_EQ(recent.next_frame(), 100 + static_cast<FrameIndex>(end));
+      ASSERT_TRUE(recent->Add(std::span(all.values).subspan(frame * cells, (end - frame) * cells)));
+      EXPECT_EQ(recent->next_frame(), 100 + static_cast<FrameIndex>(end));
       const std::size_t first = end < kWindow ? 0 : end - kWindow;
       OccupancyMaps window = all;
       window.first_frame = 100 + static_cast<FrameIndex>(first);
       window.values.assign(all.values.begin() + static_cast<std::ptrdiff_t>(first * cells),
                            all.values.begin() + static_cast<std::ptrdiff_t>(end * cells));
       const auto expected = LinkMaps(window, {}, {.smoothing_secs = 0, .min_length_secs = 0});
-      const auto tracks = recent.Link();
+      const auto tracks = recent->Link();
       ASSERT_TRUE(expected && tracks) << MessageOf(tracks);
       EXPECT_EQ(*tracks, expected->tracks);
       EXPECT_EQ(tracks->size(), end >= kWindow ? 2U : expected->tracks.size());

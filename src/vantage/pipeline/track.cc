@@ -81,13 +81,16 @@ class Feedback {
     if (!options.hold.standing || std::ranges::none_of(stream.subtractors(), learns)) {
       return std::nullopt;
     }
+    LinkingOptions linking = options.linking;
+    linking.max_paths = 0;  // counts the paths of a whole recording
     std::vector<Camera> cameras;
     for (const SceneCamera& camera : scene.cameras) cameras.push_back(camera.camera);
     VANTAGE_ASSIGN_OR_RETURN(
         OccupiedRegions occupied,
         OccupiedRegions::Create(std::move(cameras), person, options.hold, scene.frames_per_second));
-    RecentTracks recent(like, occupied.window_frames(), options.linking, options.tracks,
-                        std::move(doors), scene.obstacles);
+    VANTAGE_ASSIGN_OR_RETURN(RecentTracks recent,
+                             RecentTracks::Create(like, occupied.window_frames(), linking,
+                                                  options.tracks, doors, scene.obstacles));
     return Feedback(std::move(occupied), std::move(recent));
   }
 
@@ -104,7 +107,7 @@ class Feedback {
 
   /// The maps of the frames read since the last call.
   Status Update(std::span<const float> maps) {
-    recent_.Add(maps);
+    VANTAGE_RETURN_IF_ERROR(recent_.Add(maps));
     VANTAGE_ASSIGN_OR_RETURN(const Tracks tracks, recent_.Link());
     occupied_.Name(tracks, recent_.next_frame());
     return {};
