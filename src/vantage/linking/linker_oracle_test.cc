@@ -72,12 +72,18 @@ std::int64_t BruteForce(const Instance& instance) {
   return best(0, 0, most);
 }
 
-TEST(LinkerOracle, EqualsNetworkSimplexOnRandomProblems) {
-  int with_paths = 0;
-  int capped = 0;
-  for (unsigned seed = 0; seed < 1000; ++seed) {
+// Ten thousand problems in parts that may run side by side; grids up to 12 x 12, up to 30 frames.
+class LinkerOracleParts : public ::testing::TestWithParam<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(OfTen, LinkerOracleParts, ::testing::Range(0U, 10U));
+
+TEST_P(LinkerOracleParts, EqualsNetworkSimplexOnRandomProblems) {
+  constexpr unsigned problems = 1000;
+  unsigned with_paths = 0;
+  unsigned capped = 0;
+  for (unsigned i = 0; i < problems; ++i) {
+    const unsigned seed = GetParam() * problems + i;
     SCOPED_TRACE(seed);
-    const Instance instance = RandomInstance(seed);
+    const Instance instance = RandomInstance(seed, {.side = 12, .frames = 30, .depth = 3});
     const Result<LinkingResult> result = LinkPaths(instance.problem(), instance.options);
     ASSERT_TRUE(result) << result.error().message;
     const testing::LemonAnswer right =
@@ -95,8 +101,8 @@ TEST(LinkerOracle, EqualsNetworkSimplexOnRandomProblems) {
     }
   }
   // The problems are worth solving.
-  EXPECT_GT(with_paths, 500);
-  EXPECT_GT(capped, 100);
+  EXPECT_GT(with_paths, problems / 2);
+  EXPECT_GT(capped, problems / 10);
 }
 
 // The order of searches and the sweeps between them may not change the optimum: here nothing is

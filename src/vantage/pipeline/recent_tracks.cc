@@ -29,6 +29,8 @@ Result<RecentTracks> RecentTracks::Create(const OccupancyMaps& like, std::int64_
                                           const LinkingOptions& linking, const TrackOptions& tracks,
                                           std::span<const Polygon> doors,
                                           std::span<const Polygon> obstacles) {
+  LinkingOptions stream_linking = linking;
+  stream_linking.max_paths = 0;  // a cap counts the paths of the whole recording
   const std::vector<std::uint8_t> access = AccessCells(like, linking.access, doors);
   const std::vector<std::uint8_t> obstacle = CellsIn(like.grid, obstacles);
   VANTAGE_ASSIGN_OR_RETURN(StreamLinker linker,
@@ -38,7 +40,7 @@ Result<RecentTracks> RecentTracks::Create(const OccupancyMaps& like, std::int64_
                                                  .obstacle = obstacle,
                                                  .cell_m = like.grid.cell_m,
                                                  .frames_per_second = like.frames_per_second},
-                                                linking, window_frames));
+                                                stream_linking, window_frames));
   return RecentTracks(like, window_frames, std::move(linker), tracks);
 }
 

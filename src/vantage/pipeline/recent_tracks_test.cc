@@ -48,8 +48,11 @@ TEST(RecentTracks, AreThoseOfTheLastMapsHoweverTheyCome) {
       const auto expected = LinkMaps(window, {}, {.smoothing_secs = 0, .min_length_secs = 0});
       const auto tracks = recent->Link();
       ASSERT_TRUE(expected && tracks) << MessageOf(tracks);
+      // Before the window is full, a path that may go on has not paid for its end: found sooner.
+      EXPECT_GE(tracks->size(), expected->tracks.size());
+      if (end < kWindow) continue;
       EXPECT_EQ(*tracks, expected->tracks);
-      EXPECT_EQ(tracks->size(), end >= kWindow ? 2U : expected->tracks.size());
+      EXPECT_EQ(tracks->size(), 2U);
     }
   }
 }
