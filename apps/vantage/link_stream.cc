@@ -23,11 +23,14 @@ Status Write(TrackWriter& writer, const std::vector<TrackRow>& rows) {
   return {};
 }
 
-/// The optimum over all frames at once, for which all maps must be in memory.
+/// The optimum over all frames at once, for which all maps must be in memory; by the rules of the
+/// stream.
 Result<LinkingReport> LinkWhole(const LinkStreamJob& job, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const OccupancyMaps maps, ReadMaps(job.maps));
+  LinkingOptions linking = job.linking;
+  linking.inside_cost = linking.inside_cost.value_or(kInsideCostOfStreams);
   VANTAGE_ASSIGN_OR_RETURN(const LinkMapsResult result,
-                           LinkMaps(maps, job.linking, job.tracks, job.doors, job.obstacles,
+                           LinkMaps(maps, linking, job.tracks, job.doors, job.obstacles,
                                     MakeRunControl(common, "link whole", "steps")));
   return result.report.linking;
 }

@@ -46,17 +46,18 @@ inline constexpr SearchEffort kNoSweeps = {.reach = 0};
 /// theorem 9.3).
 ///  1. Start: y = 0, and exactly the arcs with c(v) < 0 carry flow. The reversed arcs cost
 ///     -c(v) > 0, all others at least 0, so the condition holds without any search. Every such node
-///     has one unit too many at out(v) and one too few at in(v).
-///  2. Each excess goes along a shortest residual path to the nearest in(w) that lacks a unit, or
-///     to the edge, whose balance is settled by step 3.
-///  3. Each lack left over is filled along a shortest residual path that comes from the edge.
+///     has one unit too many at out(v) and one too few at in(v). A sweep in time (Sweep) replaces
+///     y by distances, under which the condition holds as well.
+///  2. Each lack is filled along a shortest residual path that comes from the nearest out(v) with
+///     an excess, or from the edge, whose balance is settled by step 3.
+///  3. Each excess left over goes along a shortest residual path to the edge.
 /// A shortest path and the update of potentials that belongs to it keep the condition (lemma 9.12),
 /// whichever vertices they join, and each takes away one imbalance: it ends at the exact optimum.
 /// In steps 2 and 3 a target can always be reached, since the empty flow is feasible: the
 /// difference between it and the pseudo-flow is made of residual paths from excess to lack.
 ///
-/// Why it is fast: people are seen in most frames, so nearly every excess finds its target one move
-/// ahead at cost 0. A search goes only as far as its target, in cost, and cells where nobody is
+/// Why it is fast: people are seen in most frames, so nearly every lack finds its target one move
+/// behind at cost 0. A search goes only as far as its target, in cost, and cells where nobody is
 /// seen cost much; whole tracks are never searched.
 ///
 /// A stream. Frames may be added after the flow was settled, and the oldest dropped:
