@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -114,7 +115,9 @@ class FlowSolver {
     Cost distance;
     std::int32_t order;  // among equals the one farthest along goes first, as if sent straight on
     Vertex vertex;
-    friend auto operator<=>(const QueueEntry&, const QueueEntry&) = default;
+    friend bool operator>(const QueueEntry& a, const QueueEntry& b) {
+      return std::tie(a.distance, a.order, a.vertex) > std::tie(b.distance, b.order, b.vertex);
+    }
   };
   using Arc = std::pair<Vertex, Vertex>;
 

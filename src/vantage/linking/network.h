@@ -54,17 +54,21 @@ struct Network {
     return static_cast<std::size_t>(column + depth) +
            static_cast<std::size_t>(row + depth) * padded_columns();
   }
-  std::size_t padded_columns() const { return static_cast<std::size_t>(columns + 2 * depth); }
+  std::size_t padded_columns() const {
+    return static_cast<std::size_t>(columns) + 2 * static_cast<std::size_t>(depth);
+  }
   std::size_t padded_cells() const {
-    return padded_columns() * static_cast<std::size_t>(rows + 2 * depth);
+    return padded_columns() *
+           (static_cast<std::size_t>(rows) + 2 * static_cast<std::size_t>(depth));
   }
   bool Contains(int column, int row) const {
     return column >= 0 && column < columns && row >= 0 && row < rows;
   }
   /// Cost of the move by so many columns and rows, which must be one.
   Cost MoveCost(int column_step, int row_step) const {
-    return move_costs[static_cast<std::size_t>(column_step + depth +
-                                               (row_step + depth) * (2 * depth + 1))];
+    const std::size_t side = 2 * static_cast<std::size_t>(depth) + 1;
+    return move_costs[static_cast<std::size_t>(column_step + depth) +
+                      static_cast<std::size_t>(row_step + depth) * side];
   }
 
   std::vector<Cost> move_costs;  ///< see MoveCost

@@ -14,8 +14,8 @@ constexpr std::size_t kBlock = 16;  // cells that are looked at together
 }  // namespace
 NodeStore::NodeStore(const Network& network)
     : network_(network),
-      tile_columns_((network.columns + kTileMask) >> kTileShift),
-      tiles_per_frame_(static_cast<std::size_t>(tile_columns_) *
+      tile_columns_(static_cast<std::size_t>((network.columns + kTileMask) >> kTileShift)),
+      tiles_per_frame_(tile_columns_ *
                        static_cast<std::size_t>((network.rows + kTileMask) >> kTileShift)) {
   NewTile();
 }

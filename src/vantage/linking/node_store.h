@@ -120,16 +120,18 @@ class NodeStore {
   }
   Frame& At(std::int64_t frame) { return frames_[static_cast<std::size_t>(frame - first_frame_)]; }
   std::size_t TilePlace(int column, int row) const {
-    return static_cast<std::size_t>((column >> kTileShift) + (row >> kTileShift) * tile_columns_);
+    return static_cast<std::size_t>(column >> kTileShift) +
+           static_cast<std::size_t>(row >> kTileShift) * tile_columns_;
   }
   static std::size_t PlaceInTile(int column, int row) {
-    return static_cast<std::size_t>((column & kTileMask) + ((row & kTileMask) << kTileShift));
+    return static_cast<std::size_t>(column & kTileMask) +
+           (static_cast<std::size_t>(row & kTileMask) << kTileShift);
   }
   NodeId NewNode();
   TileId NewTile();
 
   const Network& network_;
-  const int tile_columns_;
+  const std::size_t tile_columns_;
   const std::size_t tiles_per_frame_;
   std::deque<Frame> frames_;
   std::int64_t first_frame_ = 0;
