@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <new>
 #include <unordered_map>
 #include <utility>
 
@@ -15,6 +16,14 @@ namespace vantage {
 
 using linking::Node;
 using linking::NodeId;
+
+namespace {
+
+tl::unexpected<Error> NotEnoughMemory() {
+  return Fail("linking: not enough memory for the stream; use larger cells or a shorter lag");
+}
+
+}  // namespace
 
 class StreamLinker::State {
  public:
@@ -122,8 +131,12 @@ Result<StreamLinker> StreamLinker::Create(const StreamGrid& grid, const LinkingO
   }
   LinkingOptions stream_options = options;
   stream_options.inside_cost = options.inside_cost.value_or(kInsideCostOfStreams);
-  VANTAGE_ASSIGN_OR_RETURN(linking::Network network, linking::MakeNetwork(grid, stream_options));
-  return StreamLinker(std::make_unique<State>(std::move(network), lag_frames));
+  try {
+    VANTAGE_ASSIGN_OR_RETURN(linking::Network network, linking::MakeNetwork(grid, stream_options));
+    return StreamLinker(std::make_unique<State>(std::move(network), lag_frames));
+  } catch (const std::bad_alloc&) {
+    return NotEnoughMemory();
+  }
 }
 
 StreamLinker::StreamLinker(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -132,7 +145,11 @@ StreamLinker& StreamLinker::operator=(StreamLinker&&) noexcept = default;
 StreamLinker::~StreamLinker() = default;
 
 Result<std::optional<StreamFrame>> StreamLinker::Add(std::span<const float> probability) {
-  return state_->Add(probability);
+  try {
+    return state_->Add(probability);
+  } catch (const std::bad_alloc&) {
+    return NotEnoughMemory();
+  }
 }
 std::vector<StreamFrame> StreamLinker::Tentative() const { return state_->Tentative(); }
 std::vector<StreamFrame> StreamLinker::Finish() { return state_->Finish(); }

@@ -71,7 +71,7 @@ class StreamLinker {
 
   /// Adds the next frame's columns * rows probabilities. Returns the frame that is final now, if
   /// any. Fails, changing nothing, on a wrong size and on probabilities that are NaN or outside [0,
-  /// 1].
+  /// 1]; and when memory is at its end, after which nothing may be called.
   Result<std::optional<StreamFrame>> Add(std::span<const float> probability);
 
   /// The paths in the frames that are not final, as far as is known now, the oldest frame first. A
