@@ -36,4 +36,18 @@ Result<LinkMapsResult> LinkMaps(const OccupancyMaps& maps, const LinkingOptions&
   return result;
 }
 
+Result<StreamLinker> MakeStreamLinker(const OccupancyMaps& like, const LinkingOptions& linking,
+                                      std::int64_t lag_frames, std::span<const Polygon> doors,
+                                      std::span<const Polygon> obstacles) {
+  const std::vector<std::uint8_t> access = AccessCells(like, linking.access, doors);
+  const std::vector<std::uint8_t> obstacle = CellsIn(like.grid, obstacles);
+  return StreamLinker::Create({.columns = like.grid.columns,
+                               .rows = like.grid.rows,
+                               .access = access,
+                               .obstacle = obstacle,
+                               .cell_m = like.grid.cell_m,
+                               .frames_per_second = like.frames_per_second},
+                              linking, lag_frames);
+}
+
 }  // namespace vantage

@@ -8,6 +8,7 @@
 #include "vantage/base/run_control.h"
 #include "vantage/geometry/polygon.h"
 #include "vantage/linking/linker.h"
+#include "vantage/linking/stream_linker.h"
 #include "vantage/linking/track_builder.h"
 #include "vantage/occupancy/maps.h"
 #include "vantage/tracks/track.h"
@@ -37,5 +38,11 @@ Result<LinkMapsResult> LinkMaps(const OccupancyMaps& maps, const LinkingOptions&
                                 const TrackOptions& tracks, std::span<const Polygon> doors = {},
                                 std::span<const Polygon> obstacles = {},
                                 const RunControl& control = {});
+
+/// The linker of a stream of maps on the grid and with the visibility of `like`, whose values are
+/// not used; access and obstacles as LinkMaps has them.
+Result<StreamLinker> MakeStreamLinker(const OccupancyMaps& like, const LinkingOptions& linking,
+                                      std::int64_t lag_frames, std::span<const Polygon> doors,
+                                      std::span<const Polygon> obstacles);
 
 }  // namespace vantage

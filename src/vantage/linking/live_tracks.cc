@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "vantage/base/stopwatch.h"
-#include "vantage/linking/access.h"
+#include "vantage/linking/link_maps.h"
 
 namespace vantage {
 
@@ -33,16 +33,8 @@ Result<LiveTracks> LiveTracks::Create(const OccupancyMaps& like, const LinkingOp
   // Bounded against absurd frame rates.
   const auto lag_frames = static_cast<std::int64_t>(
       std::llround(std::clamp(lag_secs * like.frames_per_second, 1.0, kMaxLagFrames)));
-  const std::vector<std::uint8_t> access = AccessCells(like, linking.access, doors);
-  const std::vector<std::uint8_t> obstacle = CellsIn(like.grid, obstacles);
   VANTAGE_ASSIGN_OR_RETURN(StreamLinker linker,
-                           StreamLinker::Create({.columns = like.grid.columns,
-                                                 .rows = like.grid.rows,
-                                                 .access = access,
-                                                 .obstacle = obstacle,
-                                                 .cell_m = like.grid.cell_m,
-                                                 .frames_per_second = like.frames_per_second},
-                                                linking, lag_frames));
+                           MakeStreamLinker(like, linking, lag_frames, doors, obstacles));
   return LiveTracks(std::move(refiner), std::move(linker), like.first_frame, lag_frames);
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "vantage/linking/access.h"
+#include "vantage/linking/link_maps.h"
 
 namespace vantage {
 
@@ -31,16 +31,8 @@ Result<RecentTracks> RecentTracks::Create(const OccupancyMaps& like, std::int64_
                                           std::span<const Polygon> obstacles) {
   LinkingOptions stream_linking = linking;
   stream_linking.max_paths = 0;  // a cap counts the paths of the whole recording
-  const std::vector<std::uint8_t> access = AccessCells(like, linking.access, doors);
-  const std::vector<std::uint8_t> obstacle = CellsIn(like.grid, obstacles);
   VANTAGE_ASSIGN_OR_RETURN(StreamLinker linker,
-                           StreamLinker::Create({.columns = like.grid.columns,
-                                                 .rows = like.grid.rows,
-                                                 .access = access,
-                                                 .obstacle = obstacle,
-                                                 .cell_m = like.grid.cell_m,
-                                                 .frames_per_second = like.frames_per_second},
-                                                stream_linking, window_frames));
+                           MakeStreamLinker(like, stream_linking, window_frames, doors, obstacles));
   return RecentTracks(like, window_frames, std::move(linker), tracks);
 }
 
