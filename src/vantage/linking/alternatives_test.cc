@@ -11,53 +11,24 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <random>
 #include <utility>
 
 #include "vantage/base/test_support.h"
 #include "vantage/linking/node_cost.h"
+#include "vantage/linking/test_instances.h"
 
 namespace vantage {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::Instance;
 using testing::MessageOf;
+using testing::Random;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  int Int(int low, int high) {
-    return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
-  }
-  double Unit() { return static_cast<double>(engine_()) / 4294967296.0; }
-  bool Chance(double p) { return Unit() < p; }
-
- private:
-  std::mt19937 engine_;
-};
-
-struct Instance {
-  int columns = 1;
-  int rows = 1;
-  int frames = 1;
-  std::vector<float> probability;
-  std::vector<std::uint8_t> access, obstacle;
-  LinkingOptions options;
-
-  int cells() const { return columns * rows; }
-  LinkingProblem problem() const {
-    return {.columns = columns,
-            .rows = rows,
-            .frames = frames,
-            .probability = probability,
-            .access = access,
-            .obstacle = obstacle};
-  }
-};
-
-Instance RandomInstance(unsigned seed, int side, int frames) {
+/// Small enough to enumerate all its solutions.
+Instance TinyInstance(unsigned seed, int side, int frames) {
   Random random(seed);
   Instance instance;
   instance.columns = random.Int(1, side);
@@ -253,7 +224,7 @@ TEST(Alternatives, EqualEnumerationOnTinyProblems) {
   int weak_steps = 0, further = 0, capped = 0, with_margin = 0;
   for (unsigned seed = 0; seed < 400; ++seed) {
     SCOPED_TRACE(seed);
-    const Instance instance = RandomInstance(seed, 2, seed % 3 == 0 ? 4 : 3);
+    const Instance instance = TinyInstance(seed, 2, seed % 3 == 0 ? 4 : 3);
     const auto optimum = LinkPaths(instance.problem(), instance.options);
     ASSERT_TRUE(optimum) << optimum.error().message;
     Random random(seed + 10000);

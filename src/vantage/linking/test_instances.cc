@@ -7,25 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <random>
 #include <set>
 #include <utility>
 
 namespace vantage::testing {
 namespace {
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  int Int(int low, int high) {
-    return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
-  }
-  double Unit() { return static_cast<double>(engine_()) / 4294967296.0; }
-  bool Chance(double p) { return Unit() < p; }
-
- private:
-  std::mt19937 engine_;
-};
 
 float RandomProbability(Random& random, int style) {
   switch (style) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,20 @@
 /// written down once more and plainly.
 
 namespace vantage::testing {
+
+/// The same numbers from the same seed on every machine.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  int Int(int low, int high) {
+    return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
+  }
+  double Unit() { return static_cast<double>(engine_()) / 4294967296.0; }
+  bool Chance(double p) { return Unit() < p; }
+
+ private:
+  std::mt19937 engine_;
+};
 
 /// A problem that owns its numbers.
 struct Instance {
