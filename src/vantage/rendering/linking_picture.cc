@@ -23,11 +23,6 @@ const cv::Scalar kText = {235, 235, 235};
 
 cv::Scalar ColorOfPath(std::size_t path) { return ColorOf(TrackId{static_cast<int>(path) + 1}); }
 
-Vector2d LowOf(const GroundGrid& grid) { return {grid.min_x_m, grid.min_y_m}; }
-Vector2d SideOf(const GroundGrid& grid) {
-  return {grid.columns * grid.cell_m, grid.rows * grid.cell_m};
-}
-
 /// What a plan shows of the scene; the rectangle around the maps' area when it has none of its own.
 Scene GroundOf(const Scene& scene, const OccupancyMaps& maps) {
   Scene ground;

@@ -33,11 +33,6 @@ cv::Scalar CameraColor(std::size_t camera) {
   return ColorOf(TrackId{static_cast<int>(camera) + 1});
 }
 
-Vector2d LowOf(const GroundGrid& grid) { return {grid.min_x_m, grid.min_y_m}; }
-Vector2d SideOf(const GroundGrid& grid) {
-  return {grid.columns * grid.cell_m, grid.rows * grid.cell_m};
-}
-
 /// The grid and this share of its longer side around it.
 Plan PlanOf(const Scene& scene, const GroundGrid& grid, double around) {
   const Vector2d margin = Vector2d::Constant(around * SideOf(grid).maxCoeff());

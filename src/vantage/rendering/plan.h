@@ -6,10 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "vantage/geometry/grid.h"
 #include "vantage/rendering/people.h"
 #include "vantage/scene/scene.h"
 
 namespace vantage {
+
+/// The corner of the grid with the lowest x and y, and the lengths of its sides, metres.
+inline Eigen::Vector2d LowOf(const GroundGrid& grid) { return {grid.min_x_m, grid.min_y_m}; }
+inline Eigen::Vector2d SideOf(const GroundGrid& grid) {
+  return {grid.columns * grid.cell_m, grid.rows * grid.cell_m};
+}
 
 /// Bird's-eye plan of the scene's area: x to the right, y up, metres. Ground that cameras see is
 /// lighter, the more of them the lighter; cameras beyond the plan's edge show as arrows on it.
