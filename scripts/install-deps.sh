@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config
   # library
   libopencv-dev libeigen3-dev libtbb-dev libhdf5-dev libfmt-dev libexpected-dev
-  libtomlplusplus-dev libpugixml-dev nlohmann-json3-dev libssl-dev libhwy-dev
+  libtomlplusplus-dev libpugixml-dev nlohmann-json3-dev libssl-dev libhwy-dev libembree-dev
   # program
   libcli11-dev libspdlog-dev
   # tests: test libraries and the independent minimum-cost-flow solver
