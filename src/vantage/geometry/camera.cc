@@ -247,6 +247,25 @@ Result<Camera> Camera::Scaled(ImageSize size) const {
   return camera;
 }
 
+LensModel Camera::ScaledLens() const {
+  LensModel scaled = lens_;
+  std::visit(
+      [&](auto& model) {
+        const Vector2d center = Rescale({model.cx_px, model.cy_px}, scale_);
+        model.cx_px = center.x();
+        model.cy_px = center.y();
+      },
+      scaled);
+  if (auto* pinhole = std::get_if<PinholeModel>(&scaled)) {
+    pinhole->fx_px *= scale_.x();
+    pinhole->fy_px *= scale_.y();
+  } else if (auto* tsai = std::get_if<TsaiModel>(&scaled)) {
+    tsai->dpx_mm /= scale_.x();
+    tsai->dpy_mm /= scale_.y();
+  }
+  return scaled;
+}
+
 Vector3d Camera::center_m() const { return -pose_.rotation.transpose() * pose_.translation_m; }
 
 std::optional<Vector2d> Camera::ImageFromWorld(const Vector3d& world_m) const {

@@ -72,7 +72,10 @@ class Camera {
   Result<Camera> Scaled(ImageSize size) const;
 
   ImageSize size() const { return size_; }
+  /// As given to Create, also when Scaled since.
   const LensModel& lens() const { return lens_; }
+  /// In pixels of size(): Create with these, size() and pose() makes the same camera.
+  LensModel ScaledLens() const;
   const CameraPose& pose() const { return pose_; }
   Eigen::Vector3d center_m() const;
   bool InPicture(const Eigen::Vector2d& image_px) const {

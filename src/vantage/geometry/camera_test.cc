@@ -269,6 +269,27 @@ TEST(Camera, PictureReachesHalfAPixelAroundItsOuterCentres) {
   EXPECT_FALSE(camera.InPicture({0, 575.5}));
 }
 
+TEST(Camera, TheLensOfAScaledCameraMakesTheSameCamera) {
+  Random random(9);
+  const LensModel lenses[] = {RandomPinhole(random), TsaiModel{.focal_mm = 5.5,
+                                                               .kappa1_per_mm2 = 5e-3,
+                                                               .dpx_mm = 5.1e-3,
+                                                               .dpy_mm = 4.65e-3,
+                                                               .sx = 1.1,
+                                                               .cx_px = 380,
+                                                               .cy_px = 290}};
+  for (const LensModel& lens : lenses) {
+    const Camera scaled =
+        Camera::Create(kSize, lens, RandomPose(random)).value().Scaled({300, 200}).value();
+    const Camera same = Camera::Create({300, 200}, scaled.ScaledLens(), scaled.pose()).value();
+    for (int i = 0; i < 50; ++i) {
+      const auto world = scaled.WorldFromImage(random.Point(0, 200));
+      if (!world) continue;
+      EXPECT_LT((*same.ImageFromWorld(*world) - *scaled.ImageFromWorld(*world)).norm(), 1e-9);
+    }
+  }
+}
+
 TEST(Camera, ScalingKeepsThePixelCentreConvention) {
   Random random(8);
   const Camera camera = Camera::Create(kSize, RandomPinhole(random), RandomPose(random)).value();
