@@ -2,41 +2,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "vantage/base/result.h"
 #include "vantage/base/run_control.h"
+#include "vantage/simulation/faults.h"
 #include "vantage/simulation/film.h"
 #include "vantage/simulation/presets.h"
 
 namespace vantage::simulation {
 
-/// Something that goes wrong with one camera's delivery. Frames are those of the scene.
-struct CameraFault {
-  enum class Kind {
-    kDrop,    ///< the frames are missing: what follows moves up
-    kFreeze,  ///< the picture before them is repeated
-    kBlack,   ///< black pictures
-    kDrift,   ///< the clock runs wrong: `drift` frames more (or fewer) a second from first on
-  };
-  Kind kind = Kind::kFreeze;
-  int camera = 0;        ///< from 0
-  FrameIndex first = 0;  ///< the first frame concerned
-  FrameIndex count = 1;  ///< at least 1; not used by kDrift
-  double drift = 0;      ///< frames a second, -1 to 1
-};
-
-/// Parses "drop:CAMERA:FIRST:COUNT", "freeze:...", "black:...", "drift:CAMERA:FIRST:FRAMES_A_SEC";
-/// cameras count from 1 here, as their names do.
-Result<CameraFault> ParseCameraFault(std::string_view text);
-
 struct RecordOptions {
   std::string preset;
   PresetOptions stage;
-  bool masks = true;  ///< write the true masks
+  bool masks = true;  ///< whether the true masks are written
   std::vector<CameraFault> faults;
 };
 
@@ -44,21 +25,30 @@ struct RecordReport {
   FilmReport film;
   FrameIndex frames = 0;
   int cameras = 0;
-  int people = 0;
+  int people = 0;  ///< different ones
   double encode_secs = 0;
   double total_secs = 0;
 };
 
-/// Writes a simulated recording into `folder`:
-///   scene.toml                      cameras with calibration, area, frames per second
-///   camera1.mp4 ...                 H.264
-///   truth/tracks.csv                frame,id,x,y of every person in every frame, inside the area
-///   or not truth/boxes/camera1.txt ...     MOTChallenge truth:
-///   frame,id,left,top,width,height,1,1,visibility truth/masks/camera1/masks.mkv   exact masks
-///   (lossless video), PNG where sides are odd simulation.json                 preset, seed,
-///   options, version
-/// Tracks and boxes are the same files for the same options whatever the thread count; so are the
-/// pictures before encoding. `folder` is a StagedDirectory's: the caller commits it.
+/// Writes a simulated recording into `folder`, which exists and is empty (a StagedDirectory's, so
+/// that the recording appears whole or not at all):
+///
+///   scene.toml                     cameras with their calibration, area, frames per second
+///   CAMERA.mp4                     H.264, one a camera
+///   truth/tracks.csv               every person in every frame, inside the area or not, metres
+///   truth/boxes/CAMERA.txt         MOTChallenge text: around all of a person that is in the
+///   picture,
+///                                  whether hidden or not; columns 8 and 9 are x and y in metres
+///   truth/visibility.csv           frame,camera,id,pixels,visible_pixels: how much of each person
+///                                  is in the picture, and how much of that is not hidden
+///   truth/masks/CAMERA/            masks of every frame: a lossless video, or PNG where a side is
+///                                  odd
+///   simulation.json                preset, seed, options, version
+///
+/// Truth is that of the scene's frames, also where a camera's faults deliver other pictures. For
+/// the same options truth and the pictures before encoding are the same for every thread count.
+/// Fails as MakeStage does, on faults of a camera that there is not, on a camera that would
+/// deliver nothing, and when a file cannot be written.
 Result<RecordReport> RecordScene(const RecordOptions& options, const std::filesystem::path& folder,
                                  int threads, const RunControl& control = {});
 
