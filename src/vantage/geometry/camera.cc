@@ -278,11 +278,23 @@ std::optional<Vector2d> Camera::ImageFromWorld(const Vector3d& world_m) const {
   return Rescale(*pixel, scale_);
 }
 
-std::optional<Vector3d> Camera::WorldFromImage(const Vector2d& image_px, double z_m) const {
+std::optional<Vector3d> Camera::RayAtUnitDepth(const Vector2d& image_px) const {
   const Vector2d pixel = Rescale(image_px, scale_.cwiseInverse());
   const auto u = std::visit([&](const auto& m) { return Direction(m, pixel, max_radius_); }, lens_);
   if (!u) return std::nullopt;
-  const Vector3d ray = pose_.rotation.transpose() * Vector3d(u->x(), u->y(), 1);
+  return pose_.rotation.transpose() * Vector3d(u->x(), u->y(), 1);
+}
+
+std::optional<Vector3d> Camera::RayFromImage(const Vector2d& image_px) const {
+  const auto ray = RayAtUnitDepth(image_px);
+  if (!ray) return std::nullopt;
+  return ray->normalized();
+}
+
+std::optional<Vector3d> Camera::WorldFromImage(const Vector2d& image_px, double z_m) const {
+  const auto unit_depth_ray = RayAtUnitDepth(image_px);
+  if (!unit_depth_ray) return std::nullopt;
+  const Vector3d& ray = *unit_depth_ray;
   const Vector3d center = center_m();
   if (std::abs(ray.z()) < 1e-12) return std::nullopt;
   const double depth = (z_m - center.z()) / ray.z();

@@ -68,6 +68,10 @@ class Camera {
   std::optional<Eigen::Vector3d> WorldFromImage(const Eigen::Vector2d& image_px,
                                                 double z_m = 0) const;
 
+  /// Unit direction, in the world frame, of the ray that this pixel shows: it starts at center_m().
+  /// None when the lens model has no inverse there.
+  std::optional<Eigen::Vector3d> RayFromImage(const Eigen::Vector2d& image_px) const;
+
   /// The same camera delivering pictures of another size (the whole picture scaled).
   Result<Camera> Scaled(ImageSize size) const;
 
@@ -85,6 +89,9 @@ class Camera {
 
  private:
   Camera() = default;
+  /// As RayFromImage, of length 1 along the optical axis.
+  std::optional<Eigen::Vector3d> RayAtUnitDepth(const Eigen::Vector2d& image_px) const;
+
   ImageSize size_;
   LensModel lens_;
   CameraPose pose_;
