@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/simulation/walkers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vantage::simulation {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kWalkingSpeed = 1.3;  // m/s, of people of whom nothing else is known
+constexpr double kSmoothingSecs = 0.35;
+constexpr double kTurningSpeed = 0.25;  // m/s: slower people look around
+
+/// Tangent of a monotone cubic between two secants over spans of these lengths.
+double MonotoneTangent(double secant_before, double span_before, double secant_after,
+                       double span_after) {
+  if (secant_before * secant_after <= 0) return 0;
+  const double w1 = 2 * span_after + span_before;
+  const double w2 = span_after + 2 * span_before;
+  return (w1 + w2) / (w1 / secant_before + w2 / secant_after);
+}
+
+/// Gaussian means of a sequence, its ends repeated.
+std::vector<Vector2d> Smoothed(const std::vector<Vector2d>& values, double sigma_frames) {
+  const int reach = static_cast<int>(std::ceil(3 * sigma_frames));
+  const int count = static_cast<int>(values.size());
+  std::vector<Vector2d> smooth(values.size());
+  for (int i = 0; i < count; ++i) {
+    Vector2d sum = {0, 0};
+    double weights = 0;
+    for (int k = -reach; k <= reach; ++k) {
+      const double weight = std::exp(-0.5 * (k / sigma_frames) * (k / sigma_frames));
+      sum += weight * values[static_cast<std::size_t>(std::clamp(i + k, 0, count - 1))];
+      weights += weight;
+    }
+    smooth[static_cast<std::size_t>(i)] = sum / weights;
+  }
+  return smooth;
+}
+
+/// The gate that asks for the least turning from `direction` at `from`, near ones preferred.
+const Gate& BestGate(const std::vector<Gate>& gates, const Vector2d& from,
+                     const Vector2d& direction) {
+  const Gate* best = nullptr;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Gate& gate : gates) {
+    const Vector2d way = gate.back() - from;
+    const double turning =
+        direction.norm() < 1e-6 ? 1 : 1 - way.normalized().dot(direction.normalized());
+    const double cost = turning + way.norm() / 30;
+    if (cost < lowest) {
+      lowest = cost;
+      best = &gate;
+    }
+  }
+  return *best;
+}
+
+/// Waypoints from `from` (left out) into the gate at walking speed, or as far as `secs` lead.
+std::vector<Waypoint> IntoGate(const Waypoint& from, const Gate& gate, double secs) {
+  std::vector<Waypoint> way;
+  Waypoint at = from;
+  for (auto place = gate.rbegin(); place != gate.rend(); ++place) {
+    const double leg = std::max((*place - at.ground_m).norm() / kWalkingSpeed, 0.05);
+    const double left = from.seconds + secs - at.seconds;
+    if (left <= 0.05) break;
+    const double share = std::min(1.0, left / leg);
+    at = {at.seconds + share * leg, at.ground_m + share * (*place - at.ground_m)};
+    way.push_back(at);
+    if (share < 1) break;
+  }
+  return way;
+}
+
+/// The same way backwards in time: from the gate to `to` (left out).
+std::vector<Waypoint> OutOfGate(const Waypoint& to, const Gate& gate, double secs) {
+  std::vector<Waypoint> way = IntoGate({-to.seconds, to.ground_m}, gate, secs);
+  for (Waypoint& waypoint : way) waypoint.seconds = -waypoint.seconds;
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
+/// Mean velocity over about a second from (or, with `step` -1, up to) one of the known waypoints.
+Vector2d Velocity(const std::vector<Waypoint>& known, std::size_t at, int step) {
+  std::size_t other = at;
+  const auto within = [&](std::size_t i) {
+    const double apart = std::abs(known[i].seconds - known[at].seconds);
+    return apart <= 1.05;
+  };
+  if (step > 0) {
+    while (other + 1 < known.size() && within(other + 1)) ++other;
+  } else {
+    while (other > 0 && within(other - 1)) --other;
+  }
+  if (other == at) return {0, 0};
+  return (known[other].ground_m - known[at].ground_m) / (known[other].seconds - known[at].seconds);
+}
+
+}  // namespace
+
+Way::Way(std::vector<Waypoint> waypoints)
+    : waypoints_(std::move(waypoints)), velocities_m_s_(waypoints_.size(), Vector2d(0, 0)) {
+  const auto span = [&](std::size_t i) {
+    return waypoints_[i + 1].seconds - waypoints_[i].seconds;
+  };
+  const auto secant = [&](std::size_t i) -> Vector2d {
+    return (waypoints_[i + 1].ground_m - waypoints_[i].ground_m) / span(i);
+  };
+  if (waypoints_.size() < 2) return;
+  const std::size_t last = waypoints_.size() - 1;
+  velocities_m_s_[0] = secant(0);
+  velocities_m_s_[last] = secant(last - 1);
+  for (std::size_t i = 1; i < last; ++i) {
+    for (int axis = 0; axis < 2; ++axis) {
+      velocities_m_s_[i][axis] =
+          MonotoneTangent(secant(i - 1)[axis], span(i - 1), secant(i)[axis], span(i));
+    }
+  }
+}
+
+Vector2d Way::At(double seconds) const {
+  if (seconds <= waypoints_.front().seconds) return waypoints_.front().ground_m;
+  if (seconds >= waypoints_.back().seconds) return waypoints_.back().ground_m;
+  const auto after =
+      std::upper_bound(waypoints_.begin(), waypoints_.end(), seconds,
+                       [](double value, const Waypoint& w) { return value < w.seconds; });
+  const std::size_t i = static_cast<std::size_t>(after - waypoints_.begin()) - 1;
+  const double span = waypoints_[i + 1].seconds - waypoints_[i].seconds;
+  const double t = (seconds - waypoints_[i].seconds) / span;
+  // Cubic Hermite polynomials.
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  return (2 * t3 - 3 * t2 + 1) * waypoints_[i].ground_m +
+         (t3 - 2 * t2 + t) * span * velocities_m_s_[i] +
+         (3 * t2 - 2 * t3) * waypoints_[i + 1].ground_m + (t3 - t2) * span * velocities_m_s_[i + 1];
+}
+
+std::vector<Waypoint> ThroughGates(const std::vector<Waypoint>& known,
+                                   const std::vector<Gate>& gates, double max_gap_secs) {
+  constexpr double kAnyTime = 1e6;
+  const auto leave = [&](std::size_t i) -> const Gate& {
+    return BestGate(gates, known[i].ground_m, Velocity(known, i, -1));
+  };
+  const auto arrive = [&](std::size_t i) -> const Gate& {
+    return BestGate(gates, known[i].ground_m, -Velocity(known, i, 1));
+  };
+  std::vector<Waypoint> way = OutOfGate(known.front(), arrive(0), kAnyTime);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    way.push_back(known[i]);
+    if (i + 1 == known.size()) continue;
+    const double gap = known[i + 1].seconds - known[i].seconds;
+    if (gap <= max_gap_secs) continue;
+    // Out and back in through the same gate, since the way between two gates is not known to be
+    // free. A little less than half of the time each leaves a moment to turn in.
+    const Gate& gate = leave(i);
+    for (const Waypoint& w : IntoGate(known[i], gate, 0.45 * gap)) way.push_back(w);
+    for (const Waypoint& w : OutOfGate(known[i + 1], gate, 0.45 * gap)) way.push_back(w);
+  }
+  for (const Waypoint& w : IntoGate(known.back(), leave(known.size() - 1), kAnyTime)) {
+    way.push_back(w);
+  }
+  return way;
+}
+
+Walk WalkThrough(const std::vector<Waypoint>& waypoints, double frames_per_second,
+                 FrameIndex frames) {
+  Walk walk;
+  const Way way(waypoints);
+  // A frame at a waypoint's very time counts although rounding may put it just before.
+  const auto first =
+      static_cast<FrameIndex>(std::ceil(waypoints.front().seconds * frames_per_second - 1e-6));
+  const auto last =
+      static_cast<FrameIndex>(std::floor(waypoints.back().seconds * frames_per_second + 1e-6));
+  walk.first = std::max<FrameIndex>(first, 0);
+  for (FrameIndex frame = walk.first; frame <= std::min(last, frames - 1); ++frame) {
+    walk.ground_m.push_back(way.At(static_cast<double>(frame) / frames_per_second));
+  }
+  return walk;
+}
+
+std::vector<Posture> Postures(const Walk& walk, double frames_per_second, double height_m) {
+  const std::size_t count = walk.ground_m.size();
+  std::vector<Posture> postures(count);
+  if (count == 0) return postures;
+  const double sigma = std::max(kSmoothingSecs * frames_per_second, 0.5);
+  const std::vector<Vector2d> places = Smoothed(walk.ground_m, sigma);
+  std::vector<Vector2d> directions(count, Vector2d(0, 0));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1;
+    const std::size_t after = std::min(i + 1, count - 1);
+    const Vector2d velocity = after == before
+                                  ? Vector2d(0, 0)
+                                  : Vector2d((places[after] - places[before]) * frames_per_second /
+                                             static_cast<double>(after - before));
+    postures[i].ground_m = walk.ground_m[i];
+    postures[i].speed_m_s = velocity.norm();
+    if (postures[i].speed_m_s >= kTurningSpeed) {
+      directions[i] = velocity.normalized();
+    } else if (i < walk.look_at_m.size() && walk.look_at_m[i] &&
+               (*walk.look_at_m[i] - walk.ground_m[i]).norm() > 0.05) {
+      directions[i] = (*walk.look_at_m[i] - walk.ground_m[i]).normalized();
+    }
+  }
+  // Who stands looks where they last went; at the beginning, where they will go.
+  for (std::size_t i = 1; i < count; ++i) {
+    if (directions[i].isZero()) directions[i] = directions[i - 1];
+  }
+  for (std::size_t i = count - 1; i-- > 0;) {
+    if (directions[i].isZero()) directions[i] = directions[i + 1];
+  }
+  directions = Smoothed(directions, sigma);
+  double gait = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    // A sequence that turns by exactly half a circle has a zero mean in the middle.
+    postures[i].heading_rad = directions[i].norm() > 1e-9
+                                  ? std::atan2(directions[i].y(), directions[i].x())
+                                  : (i > 0 ? postures[i - 1].heading_rad : 0);
+    gait = AdvanceGait(gait, postures[i].speed_m_s, height_m, 1 / frames_per_second);
+    postures[i].gait = gait;
+  }
+  return postures;
+}
+
+}  // namespace vantage::simulation
