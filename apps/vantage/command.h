@@ -41,6 +41,7 @@ Command LinkCommand();
 Command OccupancyCommand();
 Command RenderCommand();
 Command ReproduceCommand();
+Command SimulateCommand();
 Command TrackCommand();
 
 /// The flags of one options struct. Flags given on the command line win over what a scene file

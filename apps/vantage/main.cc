@@ -21,7 +21,7 @@ constexpr int kWrongUsage = 2;
 
 std::vector<Command> Commands() {
   return {TrackCommand(),    BackgroundCommand(), OccupancyCommand(), LinkCommand(),
-          EvaluateCommand(), RenderCommand(),     ReproduceCommand()};
+          EvaluateCommand(), RenderCommand(),     SimulateCommand(),  ReproduceCommand()};
 }
 
 int Run(int argc, char** argv) {

@@ -78,8 +78,8 @@ class FloorballScript : public Script {
         figures_(DressPeople(game_.people(), seed, stage)),
         ball_(AddMaterial(stage, {.color = {0.85F, 0.85F, 0.82F}})) {
     Dice dice(seed + 99);
-    for (double& phase : phases_) phase = dice.Between(0, 2 * std::numbers::pi);
-    door_secs_ = dice.Between(20, 35);
+    for (double& phase : phases_) phase = dice.Uniform(0, 2 * std::numbers::pi);
+    door_secs_ = dice.Uniform(20, 35);
   }
 
   std::vector<Thing> At(FrameIndex frame) const override {

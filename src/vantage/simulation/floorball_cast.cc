@@ -51,7 +51,7 @@ class Wardrobe {
   Figure Dress(const FloorballGame::Person& person) {
     Figure figure;
     figure.height_m = person.height_m;
-    figure.build = dice_.Between(0.92, 1.12);
+    figure.build = dice_.Uniform(0.92, 1.12);
     figure.skin = Any(skins_);
     figure.hair = Any(hairs_);
     figure.shoes = Any(colors_);

@@ -31,12 +31,12 @@ std::vector<Bystander> Bystanders(int first, Dice& dice) {
   // Coaches, of whom one stands still for long at first.
   all[2] = {.from_m = {-10.2, 11.1}, .to_m = {-9.1, 10.9}, .pace_m_s = 0.9, .pause_secs = 9};
   all[3] = {.from_m = {9.1, 10.9}, .to_m = {10.6, 11.1}, .pace_m_s = 0.9, .pause_secs = 9};
-  all[2].still_until_secs = dice.Between(10, 14);
+  all[2].still_until_secs = dice.Uniform(10, 14);
   // Spectators, of whom one sits at first and another just stands.
   all[4] = {.from_m = {-20, -12.6}, .to_m = {20, -12.4}, .pace_m_s = 1.3, .pause_secs = 4};
   all[5] = {.from_m = {21.8, -11.5}, .to_m = {22.2, 11}, .pace_m_s = 1.4, .pause_secs = 5};
   all[6] = {.from_m = {-21.8, -9}, .to_m = {-21.8, 10}, .pace_m_s = 1.2, .pause_secs = 3};
-  all[6].still_until_secs = dice.Between(6, 10);
+  all[6].still_until_secs = dice.Uniform(6, 10);
   all[6].sits_at_first = true;
   all[7] = {.from_m = {13.5, 12.3}, .to_m = {14.2, 12.5}, .pace_m_s = 0.6, .pause_secs = 20};
   for (std::size_t i = 0; i < all.size(); ++i) all[i].walker = first + static_cast<int>(i);
@@ -50,10 +50,10 @@ FloorballGame::FloorballGame(std::uint64_t seed, FrameIndex frames) {
   std::vector<Walker> walkers;
   const auto join = [&](Role role, int team) {
     people_.push_back(
-        {role, team, role == Role::kSpectator ? dice.Between(1.6, 1.85) : dice.Between(1.7, 1.94)});
+        {role, team, role == Role::kSpectator ? dice.Uniform(1.6, 1.85) : dice.Uniform(1.7, 1.94)});
     Walker walker;
     walker.height_m = people_.back().height_m;
-    walker.fastest_m_s = dice.Between(5.2, 6.5);
+    walker.fastest_m_s = dice.Uniform(5.2, 6.5);
     walker.posture.gait = dice.Unit();
     walkers.push_back(walker);
     return static_cast<int>(walkers.size()) - 1;
@@ -71,14 +71,14 @@ FloorballGame::FloorballGame(std::uint64_t seed, FrameIndex frames) {
     walkers.back().in_rink = true;
     for (std::size_t slot = 0; slot < 5; ++slot) {
       squad.slots[slot] = join(Role::kPlayer, team);
-      walkers.back().place_m = {own * (1.5 + 2 * static_cast<double>(slot)), dice.Between(-7, 7)};
+      walkers.back().place_m = {own * (1.5 + 2 * static_cast<double>(slot)), dice.Uniform(-7, 7)};
       walkers.back().in_rink = true;
     }
     std::vector<int> resting;
     while (static_cast<int>(resting.size()) + 6 < kTeamSizes[side]) {
       resting.push_back(join(Role::kPlayer, team));
     }
-    benches.emplace_back(team, resting, team == 0 ? dice.Between(4, 6) : dice.Between(7, 10),
+    benches.emplace_back(team, resting, team == 0 ? dice.Uniform(4, 6) : dice.Uniform(7, 10),
                          walkers);
   }
   std::vector<Bystander> bystanders = Bystanders(static_cast<int>(walkers.size()), dice);

@@ -77,12 +77,12 @@ struct Play::View {
 };
 
 Play::Play(std::uint64_t seed) : dice_(seed) {
-  spot_m_ = {dice_.Between(-6, 6), dice_.Between(-7, 4)};
+  spot_m_ = {dice_.Uniform(-6, 6), dice_.Uniform(-7, 4)};
   ball_m_ = {spot_m_.x(), spot_m_.y(), kBallRadius_m};
   team_ = dice_.Below(2);
 }
 
-void Play::Whistle() { until_secs_ = clock_secs_ + dice_.Between(3.5, 4.5); }
+void Play::Whistle() { until_secs_ = clock_secs_ + dice_.Uniform(3.5, 4.5); }
 
 void Play::Step(std::vector<Walker>& walkers, const std::array<Squad, 2>& squads, double seconds) {
   const View view{walkers, squads};
@@ -133,9 +133,9 @@ void Play::Pass(const View& view) {
   const bool near_goal = (Goal(1 - team_) - from.place_m).norm() < 9;
   state_ = State::kPassed;
   stray_ = false;
-  ball_speed_m_s_ = dice_.Between(9, 13);
+  ball_speed_m_s_ = dice_.Uniform(9, 13);
   if (near_goal && dice_.Unit() < 0.35) {  // a shot, saved
-    ball_speed_m_s_ = dice_.Between(14, 18);
+    ball_speed_m_s_ = dice_.Uniform(14, 18);
     holder_ = view.squads[static_cast<std::size_t>(1 - team_)].keeper;
     return;
   }
@@ -145,7 +145,7 @@ void Play::Pass(const View& view) {
     if (mate == *holder_ || !view.Plays(mate)) continue;
     const Vector2d way = view.at(mate).place_m - from.place_m;
     const double merit = std::min(view.Freedom(mate, 1 - team_), 3.0) + 0.12 * way.dot(ahead) -
-                         0.2 * std::abs(way.norm() - 7) + dice_.Between(0, 2);
+                         0.2 * std::abs(way.norm() - 7) + dice_.Uniform(0, 2);
     if (merit > best) {
       best = merit;
       receiver = mate;
@@ -154,7 +154,7 @@ void Play::Pass(const View& view) {
   if (dice_.Unit() < 0.22) {
     stray_ = true;
     spot_m_ = WithinBoards(view.at(receiver).place_m +
-                               Vector2d(dice_.Between(-2, 6) * ahead.x(), dice_.Between(-6, 6)),
+                               Vector2d(dice_.Uniform(-2, 6) * ahead.x(), dice_.Uniform(-6, 6)),
                            0.6);
   }
   holder_ = receiver;
@@ -172,7 +172,7 @@ void Play::StartFight(const View& view) {
   }
   state_ = State::kFight;
   holder_.reset();
-  until_secs_ = clock_secs_ + dice_.Between(1.5, 4);
+  until_secs_ = clock_secs_ + dice_.Uniform(1.5, 4);
 }
 
 void Play::EndFight(const View& view) {
@@ -182,13 +182,13 @@ void Play::EndFight(const View& view) {
     spot_m_.x() = std::clamp(spot_m_.x(), -13.0, 13.0);
     holder_.reset();
     state_ = State::kFreeHit;
-    until_secs_ = clock_secs_ + dice_.Between(4, 6);
+    until_secs_ = clock_secs_ + dice_.Uniform(4, 6);
     return;
   }
   const int winner =
       fighters_[static_cast<std::size_t>(dice_.Below(static_cast<int>(fighters_.size())))];
   team_ = view.Team(winner);
-  HoldBy(winner, dice_.Between(0.5, 1.6));
+  HoldBy(winner, dice_.Uniform(0.5, 1.6));
 }
 
 void Play::Decide(const View& view, double seconds) {
@@ -198,7 +198,7 @@ void Play::Decide(const View& view, double seconds) {
       const std::vector<int> takers = view.Nearest(team_, spot_m_);
       if (clock_secs_ > until_secs_ && !takers.empty() &&
           (view.at(takers[0]).place_m - spot_m_).norm() < 1.2) {
-        HoldBy(takers[0], dice_.Between(0.2, 0.6));
+        HoldBy(takers[0], dice_.Uniform(0.2, 0.6));
       }
       break;
     }
@@ -218,7 +218,7 @@ void Play::Decide(const View& view, double seconds) {
         StartFight(view);
       } else if (dice_.Happens(0.25, seconds)) {
         team_ = 1 - team_;
-        HoldBy(near[0], dice_.Between(0.8, 3));
+        HoldBy(near[0], dice_.Uniform(0.8, 3));
       }
       break;
     }
@@ -231,14 +231,14 @@ void Play::Decide(const View& view, double seconds) {
       const bool kept = view.IsKeeper(receiver);
       if ((ball - view.at(receiver).place_m).norm() < kReach_m + 0.15) {
         team_ = view.Team(receiver);
-        HoldBy(receiver, kept ? dice_.Between(1, 2.2) : dice_.Between(0.6, 3.2));
+        HoldBy(receiver, kept ? dice_.Uniform(1, 2.2) : dice_.Uniform(0.6, 3.2));
         break;
       }
       const std::vector<int> near = view.Nearest(1 - team_, ball);
       if (!kept && !near.empty() && (view.at(near[0]).place_m - ball).norm() < kReach_m &&
           dice_.Happens(3, seconds)) {
         team_ = 1 - team_;
-        HoldBy(near[0], dice_.Between(0.8, 3));
+        HoldBy(near[0], dice_.Uniform(0.8, 3));
       }
       break;
     }
@@ -250,7 +250,7 @@ void Play::Decide(const View& view, double seconds) {
           StartFight(view);
         } else {
           team_ = team;
-          HoldBy(near[0], dice_.Between(0.8, 3));
+          HoldBy(near[0], dice_.Uniform(0.8, 3));
         }
         break;
       }
@@ -272,10 +272,10 @@ void Play::SetWishes(const View& view) {
       Walker& walker = view.at(player);
       Roam& roam = roams_[static_cast<std::size_t>(team)][static_cast<std::size_t>(slot)];
       if (clock_secs_ > roam.until_secs) {
-        roam.until_secs = clock_secs_ + dice_.Between(1.2, 4);
-        const double angle = dice_.Between(0, 2 * std::numbers::pi);
-        roam.offset_m = dice_.Between(0.3, 3.2) * Vector2d(std::cos(angle), std::sin(angle));
-        roam.pace_m_s = dice_.Between(2.5, 6.5);
+        roam.until_secs = clock_secs_ + dice_.Uniform(1.2, 4);
+        const double angle = dice_.Uniform(0, 2 * std::numbers::pi);
+        roam.offset_m = dice_.Uniform(0.3, 3.2) * Vector2d(std::cos(angle), std::sin(angle));
+        roam.pace_m_s = dice_.Uniform(2.5, 6.5);
       }
       walker.look_at_m = ball_m_.head<2>();
       walker.arm_reach = 0;
@@ -329,10 +329,10 @@ void Play::WishOfAttacker(const View& view, int team, int slot, Walker& walker) 
   }
   if (state_ == State::kHeld && player == *holder_) {
     if (clock_secs_ > drive_until_secs_) {
-      drive_until_secs_ = clock_secs_ + dice_.Between(0.8, 2);
+      drive_until_secs_ = clock_secs_ + dice_.Uniform(0.8, 2);
       const Vector2d to_goal = Goal(1 - team) - walker.place_m;
-      const double angle = std::atan2(to_goal.y(), to_goal.x()) + dice_.Between(-1.3, 1.3);
-      drive_m_ = walker.place_m + dice_.Between(3, 7) * Vector2d(std::cos(angle), std::sin(angle));
+      const double angle = std::atan2(to_goal.y(), to_goal.x()) + dice_.Uniform(-1.3, 1.3);
+      drive_m_ = walker.place_m + dice_.Uniform(3, 7) * Vector2d(std::cos(angle), std::sin(angle));
       drive_m_.x() = std::clamp(drive_m_.x(), -15.0, 15.0);
     }
     walker.target_m = drive_m_;

@@ -69,7 +69,7 @@ void Bench::Step(std::vector<Walker>& walkers, Squad& squad, std::optional<int> 
       if (enters.posture.sit > 0 || !Near(enters, before, 0.15)) break;
       enters.seated = false;
       enters.target_m = in;
-      enters.pace_m_s = dice.Between(1.3, 2.4);
+      enters.pace_m_s = dice.Uniform(1.3, 2.4);
       state_ = State::kWalking;
       break;
     case State::kWalking: {
@@ -105,7 +105,7 @@ void Bench::Step(std::vector<Walker>& walkers, Squad& squad, std::optional<int> 
       squad.leaving.reset();
       on_since_secs_[slot_] = clock_secs;
       leaves.target_m = before;
-      leaves.pace_m_s = dice.Between(1.1, 1.6);
+      leaves.pace_m_s = dice.Uniform(1.1, 1.6);
       leaves.look_at_m.reset();
       state_ = State::kReturning;
       break;
@@ -124,7 +124,7 @@ void Bench::Step(std::vector<Walker>& walkers, Squad& squad, std::optional<int> 
       if (!Near(leaves, seat.place_m, 0.1)) break;
       seat.walker = leaving_;
       seat.since_secs = clock_secs;
-      next_secs_ = clock_secs + dice.Between(4, 16);
+      next_secs_ = clock_secs + dice.Uniform(4, 16);
       state_ = State::kQuiet;
       break;
   }
@@ -155,9 +155,9 @@ void StepBystander(Bystander& bystander, std::vector<Walker>& walkers,
   }
   if (clock_secs < bystander.next_secs) return;
   if (!Near(walker, walker.target_m, 0.4)) return;
-  bystander.next_secs = clock_secs + dice.Between(0.2, 1) * bystander.pause_secs;
+  bystander.next_secs = clock_secs + dice.Uniform(0.2, 1) * bystander.pause_secs;
   walker.target_m = bystander.from_m + dice.Unit() * (bystander.to_m - bystander.from_m);
-  walker.arm_reach = dice.Unit() < 0.3 ? dice.Between(0.2, 0.8) : 0;
+  walker.arm_reach = dice.Unit() < 0.3 ? dice.Uniform(0.2, 0.8) : 0;
 }
 
 }  // namespace vantage::simulation

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <optional>
-#include <random>
 #include <vector>
 
 #include "vantage/simulation/body.h"
+#include "vantage/simulation/dice.h"
 
 /// How people of the floorball preset move: each has a wish and follows it within what legs can do,
 /// without running into others.
@@ -17,20 +16,6 @@ namespace vantage::simulation {
 
 /// The rink: the boards stand on this line, with rounded corners.
 inline constexpr double kRinkHalfLength_m = 20, kRinkHalfWidth_m = 10, kRinkCornerRadius_m = 2.5;
-
-/// Numbers in [0, 1) that are the same on every machine.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
-  double Unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  double Between(double from, double to) { return from + (to - from) * Unit(); }
-  /// Whether something that happens `per_sec` times a second happens within this time.
-  bool Happens(double per_sec, double seconds) { return Unit() < per_sec * seconds; }
-  int Below(int count) { return static_cast<int>(Unit() * count); }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 struct Walker {
   Eigen::Vector2d place_m = {0, 0};
