@@ -23,8 +23,7 @@ constexpr int kTraced = kCorners + 2;  // with one more around them: for smoothi
 constexpr float kLargestSide_m = 300;
 constexpr float kLongestShadow_m = 15;
 constexpr float kDimReach_m = 1.2F;  // of things on the ambient light around them
-constexpr int kRaysU = 4;
-constexpr int kRaysV = 2;
+constexpr float kLift_m = 2e-3F;     // of the rays' origins off the ground
 
 struct Ball {
   Vector3f center_m;
@@ -58,14 +57,16 @@ void AddBalls(const Thing& thing, std::vector<Ball>& balls) {
 }
 
 /// Share of the ambient light on the ground that a sphere takes: its solid angle weighed with the
-/// cosine, (r / d)^2 cos, fading out to nothing at kDimReach_m.
+/// cosine, (r / d)^2 cos, half more for what lies between the spheres, fading out to nothing at
+/// kDimReach_m.
 float Dimming(const Ball& ball, const Vector2f& ground_m) {
   const float beside2 = (ball.center_m.head<2>() - ground_m).squaredNorm();
   const float fade = 1 - beside2 / (kDimReach_m * kDimReach_m);
   if (fade <= 0) return 0;
   const float height = std::max(ball.center_m.z(), ball.radius_m);
   const float distance2 = beside2 + height * height;
-  return ball.radius_m * ball.radius_m * height / (distance2 * std::sqrt(distance2)) * fade * fade;
+  return 1.5F * ball.radius_m * ball.radius_m * height / (distance2 * std::sqrt(distance2)) * fade *
+         fade;
 }
 
 /// Adds the place of the ground that a sphere shades from a point of a lamp.
@@ -254,15 +255,14 @@ void GroundLight::Trace(const FixedWorld& world, const Moving& moving, std::uint
         if (wanted[at(x, y, kTraced)] == 0) continue;
         const Vector2f ground = PointOf(left + x - 1, top + y - 1);
         const std::uint64_t key = Hash(0x67726e64U, left + x, top + y);
-        int unblocked = 0;
-        for (int ray = 0; ray < kRaysU * kRaysV; ++ray) {
-          const float u = (static_cast<float>(ray % kRaysU) + UpperUnit(key)) / kRaysU;
-          const float v = (static_cast<float>(ray / kRaysU) + LowerUnit(key)) / kRaysV;
-          const Ray way =
-              RayTowards({ground.x(), ground.y(), 0}, Vector3f::UnitZ(), LampPoint(lamp, u, v));
-          if (!IsBlocked(moving.together(), way)) ++unblocked;
+        std::array<Vector3f, 8> goals;
+        for (std::size_t ray = 0; ray < goals.size(); ++ray) {
+          const float u = (static_cast<float>(ray % 4) + UpperUnit(key)) / 4;
+          const float v = (static_cast<float>(ray / 4) + LowerUnit(key)) / 2;
+          goals[ray] = LampPoint(lamp, u, v);
         }
-        seen[at(x, y, kTraced)] = static_cast<float>(unblocked) / (kRaysU * kRaysV);
+        const int count = CountSeen(moving.together(), {ground.x(), ground.y(), kLift_m}, goals);
+        seen[at(x, y, kTraced)] = static_cast<float>(count) / 8;
       }
     }
     // Few rays a texel, smoothed over nine of them.

@@ -241,6 +241,34 @@ bool IsBlocked(RTCScene scene, const Ray& ray) {
   return query.tfar < 0;
 }
 
+int CountSeen(RTCScene scene, const Vector3f& from_m, const std::array<Vector3f, 8>& goals_m) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay8 rays;
+  alignas(32) std::array<int, 8> valid;
+  valid.fill(-1);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Vector3f way = goals_m[i] - from_m;
+    rays.org_x[i] = from_m.x();
+    rays.org_y[i] = from_m.y();
+    rays.org_z[i] = from_m.z();
+    rays.dir_x[i] = way.x();
+    rays.dir_y[i] = way.y();
+    rays.dir_z[i] = way.z();
+    rays.tnear[i] = 0;
+    rays.tfar[i] = 0.995F;
+    rays.time[i] = 0;
+    rays.mask[i] = ~0U;
+    rays.id[i] = 0;
+    rays.flags[i] = 0;
+  }
+  rtcOccluded8(valid.data(), scene, &context, &rays);
+  int seen = 0;
+  for (const float far : rays.tfar) seen += far >= 0 ? 1 : 0;
+  return seen;
+}
+
 std::array<Vector3f, 8> BlockCorners(const Block& block) {
   const float c = std::cos(block.yaw_rad);
   const float s = std::sin(block.yaw_rad);

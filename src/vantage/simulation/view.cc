@@ -201,16 +201,30 @@ void View::ComposeTile(const FrameLight& frame, const cv::Rect& pixels) {
       } else if (front_[pixel].thing >= 0) {
         codes_[pixel] = sensor_.Expose(FrontRadiance(frame, x, y), x, y);
       } else if (fixed_.At(pixel).ground) {
-        const Ray ray = rays_.Through(x, y);
-        const auto tile =
-            frame.ground.TileAt((ray.origin_m + fixed_.At(pixel).t_m * ray.direction).head<2>());
-        const bool shaded = tile && frame.ground.Key(*tile) != 0;
-        if (shaded || mirrored_front_[pixel].thing >= 0) {
+        const GroupShares shares = GroundShares(frame, x, y);
+        const bool shaded =
+            std::any_of(shares.begin(), shares.end(), [](float share) { return share != 1; });
+        if (shaded || IsMirroring(x, y)) {
           codes_[pixel] = sensor_.Expose(Background(frame, x, y), x, y);
         }
       }
     }
   }
+}
+
+GroupShares View::GroundShares(const FrameLight& frame, int x, int y) const {
+  const Ray ray = rays_.Through(x, y);
+  return frame.ground.At((ray.origin_m + fixed_.At(Pixel(x, y)).t_m * ray.direction).head<2>());
+}
+
+bool View::IsMirroring(int x, int y) const {
+  if (fixed_.At(Pixel(x, y)).mirror_t_m <= 0) return false;
+  for (int ny = std::max(0, y - 1); ny <= std::min(rays_.height() - 1, y + 1); ++ny) {
+    for (int nx = std::max(0, x - 1); nx <= std::min(rays_.width() - 1, x + 1); ++nx) {
+      if (mirrored_front_[Pixel(nx, ny)].thing >= 0) return true;
+    }
+  }
+  return false;
 }
 
 bool View::IsEdge(int x, int y) const {
@@ -228,21 +242,35 @@ Vector3f View::Background(const FrameLight& frame, int x, int y) const {
   if (!point.ground) {
     return fixed_.Diffuse(pixel, frame.gains) + fixed_.Mirrored(pixel, frame.gains);
   }
-  const Ray ray = rays_.Through(x, y);
-  GroupShares weights = frame.ground.At((ray.origin_m + point.t_m * ray.direction).head<2>());
+  GroupShares weights = GroundShares(frame, x, y);
   for (std::size_t group = 0; group < weights.size(); ++group) {
     weights[group] *= frame.gains[group];
   }
   const Vector3f diffuse = fixed_.Diffuse(pixel, weights);
+  if (!IsMirroring(x, y)) return diffuse + fixed_.Mirrored(pixel, frame.gains);
+  // Rough ground mirrors a spread of directions: those of the pixels around, each with its own.
+  Vector3f sum(0, 0, 0);
+  int count = 0;
+  for (int ny = std::max(0, y - 1); ny <= std::min(rays_.height() - 1, y + 1); ++ny) {
+    for (int nx = std::max(0, x - 1); nx <= std::min(rays_.width() - 1, x + 1); ++nx) {
+      if (fixed_.At(Pixel(nx, ny)).mirror_t_m <= 0) continue;
+      sum += MirroredLight(frame, nx, ny);
+      ++count;
+    }
+  }
+  return diffuse + point.mirror_share / static_cast<float>(count) * sum;
+}
+
+Vector3f View::MirroredLight(const FrameLight& frame, int x, int y) const {
+  const std::size_t pixel = Pixel(x, y);
   const int thing = mirrored_front_[pixel].thing;
-  if (thing < 0) return diffuse + fixed_.Mirrored(pixel, frame.gains);
+  if (thing < 0) return fixed_.Mirrored(pixel, frame.gains) / fixed_.At(pixel).mirror_share;
   const auto index = static_cast<std::size_t>(thing);
   const Ray mirrored = fixed_.MirroredRay(frame.world, rays_, x, y);
   const Hit& hit = sights_[index].mirrored.At(x, y);
-  const Vector3f seen = frame.moving.Radiance(
-      frame.world, index, hit, mirrored.origin_m + hit.t_m * mirrored.direction, mirrored.direction,
-      frame.moving.OpenLightAt(frame.world, index, hit), frame.gains);
-  return diffuse + point.mirror_share * seen;
+  return frame.moving.Radiance(frame.world, index, hit,
+                               mirrored.origin_m + hit.t_m * mirrored.direction, mirrored.direction,
+                               frame.moving.OpenLightAt(frame.world, index, hit), frame.gains);
 }
 
 Vector3f View::FrontRadiance(const FrameLight& frame, int x, int y) const {

@@ -77,6 +77,11 @@ class View {
   cv::Rect TilePixels(int column, int row) const;
   void ComposeTile(const FrameLight& frame, const cv::Rect& pixels);
   bool IsEdge(int x, int y) const;
+  GroupShares GroundShares(const FrameLight& frame, int x, int y) const;
+  /// Whether a moving thing is mirrored at the pixel or beside it.
+  bool IsMirroring(int x, int y) const;
+  /// Radiance that comes to the mirror from where it looks.
+  Eigen::Vector3f MirroredLight(const FrameLight& frame, int x, int y) const;
   Eigen::Vector3f Background(const FrameLight& frame, int x, int y) const;
   Eigen::Vector3f EdgeRadiance(const FrameLight& frame, int x, int y) const;
   Eigen::Vector3f FrontRadiance(const FrameLight& frame, int x, int y) const;
