@@ -54,6 +54,30 @@ Vector2d ProjectByOpenCv(const PinholeModel& lens, const CameraPose& pose,
   return {pixels[0].x, pixels[0].y};
 }
 
+TEST(Camera, RaysOfPixelsPassThroughWhatTheyShow) {
+  Random random(11);
+  for (int round = 0; round < 100; ++round) {
+    const LensModel lens = round % 2 == 0 ? LensModel(RandomPinhole(random)) : RandomTsai(random);
+    const Camera camera = Camera::Create(kSize, lens, RandomPose(random)).value();
+    const Vector2d pixel(random.Between(200, 500), random.Between(150, 400));
+    const auto ray = camera.RayFromImage(pixel);
+    if (!ray) continue;
+    EXPECT_NEAR(ray->norm(), 1, 1e-12);
+    const auto back = camera.ImageFromWorld(camera.center_m() + 7 * *ray);
+    ASSERT_TRUE(back);
+    EXPECT_LT((*back - pixel).norm(), 1e-6);
+  }
+}
+
+TEST(Camera, PixelsAboveTheHorizonHaveRays) {
+  const PinholeModel lens{.fx_px = 500, .fy_px = 500, .cx_px = 383.5, .cy_px = 287.5};
+  const Camera camera = Camera::Create(kSize, lens, LookAt({0, 0, 2}, {10, 0, 2})).value();
+  EXPECT_FALSE(camera.WorldFromImage({383.5, 87.5}));
+  const auto ray = camera.RayFromImage({383.5, 87.5});
+  ASSERT_TRUE(ray);
+  EXPECT_LT((*ray - Vector3d(5, 0, 2).normalized()).norm(), 1e-12);
+}
+
 TEST(Pinhole, ProjectsAsOpenCvDoes) {
   Random random(1);
   int compared = 0;

@@ -44,7 +44,7 @@ Result<Film> Film::Create(const Stage& stage, std::uint64_t seed, int threads,
   VANTAGE_RETURN_IF_ERROR(internal::CheckStage(stage));
   Stopwatch watch;
   auto state = std::make_unique<State>();
-  VANTAGE_ASSIGN_OR_RETURN(state->device, internal::MakeDevice());
+  VANTAGE_ASSIGN_OR_RETURN(state->device, internal::MakeDevice(threads));
   VANTAGE_ASSIGN_OR_RETURN(state->world, internal::FixedWorld::Create(state->device.get(), stage));
   const auto cameras = static_cast<std::int64_t>(stage.cameras.size());
   Eigen::AlignedBox2f seen;

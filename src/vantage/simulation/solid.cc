@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/simulation/solid.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+
+#include "vantage/base/parallel.h"
 
 namespace vantage::simulation::internal {
 namespace {
@@ -147,8 +151,11 @@ Result<Scene> NewScene(RTCDevice device) {
 
 }  // namespace
 
-Result<Device> MakeDevice() {
-  Device device(rtcNewDevice("threads=1,set_affinity=0"));
+Result<Device> MakeDevice(int threads) {
+  // Embree limits all of the process's use of oneTBB to its own number of threads.
+  const std::string config =
+      fmt::format("threads={},set_affinity=0", std::max(threads, HardwareThreads()));
+  Device device(rtcNewDevice(config.c_str()));
   if (!device) return Fail("Embree: no device: {}", ErrorName(rtcGetDeviceError(nullptr)));
   return device;
 }

@@ -35,8 +35,8 @@ using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease>;
 using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease>;
 using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, GeometryRelease>;
 
-/// A device that builds on the calling thread only.
-Result<Device> MakeDevice();
+/// A device whose users run on so many threads.
+Result<Device> MakeDevice(int threads);
 
 /// Fails with Embree's own words when its last call on this thread went wrong.
 Status CheckDevice(RTCDevice device);

@@ -16,7 +16,9 @@ constexpr std::size_t kMostCameras = 1000;
 constexpr std::size_t kMostThings = 10'000;
 constexpr std::size_t kMostParts = 1'000'000;
 
-bool IsPlace(const Vector3f& point_m) { return point_m.cwiseAbs().maxCoeff() <= kFarthest_m; }
+bool IsPlace(const Vector3f& point_m) {
+  return point_m.allFinite() && point_m.cwiseAbs().maxCoeff() <= kFarthest_m;
+}
 
 /// A colour or radiance.
 bool IsLight(const Vector3f& color) {
@@ -70,7 +72,7 @@ Status CheckParts(const Stage& stage, const std::string& owner, std::span<const 
     if (!IsPlace(block.center_m) || !std::isfinite(block.yaw_rad)) {
       return Fail("{}: a block's centre or yaw is not a finite number within 10 km", owner);
     }
-    if (!(block.half_m.minCoeff() >= 0) || !IsPlace(block.half_m)) {
+    if (!IsPlace(block.half_m) || block.half_m.minCoeff() < 0) {
       return Fail("{}: half of a block's side is not between 0 and 10 km", owner);
     }
   }
