@@ -161,7 +161,7 @@ void Play::Pass(const View& view) {
 }
 
 void Play::StartFight(const View& view) {
-  spot_m_ = WithinBoards(ball_m_.head<2>(), 0.75);
+  spot_m_ = BesideGoals(WithinBoards(ball_m_.head<2>(), 0.75));
   fighters_.clear();
   for (const int team : {0, 1}) {
     const std::vector<int> near = view.Nearest(team, spot_m_);
@@ -243,6 +243,11 @@ void Play::Decide(const View& view, double seconds) {
       break;
     }
     case State::kLoose: {
+      if (BesideGoals(ball) != ball) {  // the keeper's
+        team_ = ball.x() < 0 ? 0 : 1;
+        HoldBy(view.squads[static_cast<std::size_t>(team_)].keeper, dice_.Between(1, 2.2));
+        break;
+      }
       for (const int team : {0, 1}) {
         const std::vector<int> near = view.Nearest(team, ball);
         if (near.empty() || (view.at(near[0]).place_m - ball).norm() > kReach_m) continue;

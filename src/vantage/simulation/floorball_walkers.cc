@@ -33,21 +33,29 @@ Vector2d Wish(const Walker& walker) {
   return (way * (speed / distance) - walker.velocity_m_s) / 0.25;
 }
 
-// What keeps two people apart: nobody approaches faster than they could stop, and they pass each
-// other on the right.
+// What keeps two people apart: who is about to run into another turns aside in time, and nobody
+// approaches faster than they could stop.
 Vector2d Evade(const Walker& self, const Walker& other) {
   const Vector2d away = self.place_m - other.place_m;
   const double distance = std::max(away.norm(), 1e-3);
-  if (distance > 2.5) return {0, 0};
+  if (distance > 6) return {0, 0};
   const Vector2d normal = away / distance;
+  const Vector2d relative = self.velocity_m_s - other.velocity_m_s;
   const double gap = distance - kElbowRoom_m;
-  const double closing = -(self.velocity_m_s - other.velocity_m_s).dot(normal);
+  const double closing = -relative.dot(normal);
   Vector2d evasion = {0, 0};
   const double allowed = gap > 0 ? Stoppable(gap) : 2 * gap;
   if (closing > allowed) evasion += normal * std::min(12.0, 6 * (closing - allowed));
   if (gap < 0.3) evasion += normal * (0.3 - gap) * 3;
-  if (closing > 0 && gap < 1.2) {
-    evasion += Vector2d(normal.y(), -normal.x()) * std::min(closing, 2.0) * (1.2 - gap);
+  if (closing > 0.1) {
+    const double secs = distance * closing / relative.squaredNorm();  // until they are closest
+    const Vector2d miss = away + secs * relative;
+    if (secs < 1 && miss.norm() < 0.8) {
+      // To the side on which they pass, the right one when they meet head on.
+      const Vector2d right(normal.y(), -normal.x());
+      const Vector2d side = miss.norm() > 0.15 ? Vector2d(miss.normalized()) : right;
+      evasion += side * 4 * (1 - secs) * (1 - miss.norm() / 0.8);
+    }
   }
   return evasion;
 }
