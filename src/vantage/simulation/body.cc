@@ -131,7 +131,7 @@ class Builder {
         gait_(GaitOf(std::clamp(posture.speed_m_s, 0.0, 12.0), figure.height_m)),
         phase_(posture.gait - std::floor(posture.gait)),
         scale_(figure.height_m / kTall) {
-    limbs_.reserve(22);
+    limbs_.reserve(24);
     PlaceTrunk();
   }
 
@@ -251,7 +251,12 @@ class Builder {
     heel.z() = std::max(heel.z(), kHeelRadius);
     toe.z() = std::max(toe.z(), kToeRadius);
     const double girth = figure_.build;
-    Add(hip, knee, 0.088 * girth, 0.058 * girth, figure_.shorts);
+    if (figure_.legs == figure_.shorts) {  // trousers
+      Add(hip, knee, 0.088 * girth, 0.058 * girth, figure_.shorts);
+    } else {  // bare knees below shorts
+      Add(hip, hip + 0.62 * (knee - hip), 0.092 * girth, 0.080 * girth, figure_.shorts);
+      Add(hip, knee, 0.078 * girth, 0.055 * girth, figure_.skin);
+    }
     Add(knee, ankle, 0.056 * girth, 0.038, figure_.legs);
     Add(heel, toe, kHeelRadius, kToeRadius, figure_.shoes);
   }

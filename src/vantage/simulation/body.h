@@ -15,7 +15,7 @@ struct Figure {
   MaterialIndex shirt = 0;
   MaterialIndex sleeves = 0;  ///< upper arms; forearms are skin or sleeves
   bool long_sleeves = false;
-  MaterialIndex shorts = 0;  ///< hips and thighs
+  MaterialIndex shorts = 0;  ///< hips and thighs; bare knees, unless the legs are of the same
   MaterialIndex legs = 0;    ///< lower legs: socks, trousers or skin
   MaterialIndex shoes = 0;
   MaterialIndex skin = 0;
@@ -42,7 +42,7 @@ struct Posture {
 /// on the ground stays where it is.
 double AdvanceGait(double gait, double speed_m_s, double height_m, double seconds);
 
-/// The limbs of a person, about 20 round cones, soles on the ground.
+/// The limbs of a person, 20 to 24 round cones, soles on the ground.
 std::vector<Limb> BodyLimbs(const Figure& figure, const Posture& posture);
 
 }  // namespace vantage::simulation

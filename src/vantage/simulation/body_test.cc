@@ -75,10 +75,11 @@ Posture AnyPosture() {
 RC_GTEST_PROP(Body, IsFiniteAndAboveTheGroundInEveryPosture, ()) {
   Figure figure = Someone(1.5 + 0.5 * Part());
   figure.build = 0.8 + 0.5 * Part();
+  figure.legs = *rc::gen::inRange(0, 2);
   figure.stick = *rc::gen::arbitrary<bool>();
   const Posture posture = AnyPosture();
   const std::vector<Limb> limbs = BodyLimbs(figure, posture);
-  RC_ASSERT(limbs.size() == (figure.stick ? 22U : 20U));
+  RC_ASSERT(limbs.size() == (figure.stick ? 22U : 20U) + (figure.legs == figure.shorts ? 0U : 2U));
   for (const Limb& limb : limbs) {
     RC_ASSERT(limb.a_m.allFinite() && limb.b_m.allFinite());
     RC_ASSERT(limb.a_radius_m > 0 && limb.b_radius_m > 0);

@@ -41,7 +41,7 @@ class Wardrobe {
                                   Vector3f(0.60F, 0.45F, 0.06F), Vector3f(0.30F, 0.20F, 0.10F)}) {
       colors_.push_back(AddMaterial(stage_, Cloth(color, 100 + Next())));
     }
-    teams_ = {AddMaterial(stage_, Cloth({0.018F, 0.034F, 0.15F}, Next())),
+    teams_ = {AddMaterial(stage_, Cloth({0.014F, 0.026F, 0.10F}, Next())),
               AddMaterial(stage_, Cloth({0.016F, 0.016F, 0.018F}, Next()))};
     keepers_ = {AddMaterial(stage_, Cloth({0.55F, 0.25F, 0.04F}, Next())),
                 AddMaterial(stage_, Cloth({0.30F, 0.32F, 0.30F}, Next()))};
@@ -55,7 +55,7 @@ class Wardrobe {
     figure.skin = Any(skins_);
     figure.hair = Any(hairs_);
     figure.shoes = Any(colors_);
-    figure.legs = Any(colors_);
+    figure.legs = dice_.Unit() < 0.75 ? Any({colors_[0], colors_[1], colors_[3]}) : Any(colors_);
     figure.shorts = Any(colors_);
     const auto team = static_cast<std::size_t>(person.team);
     switch (person.role) {

@@ -91,7 +91,7 @@ class Builder {
                                      .second = {0.28F, 0.17F, 0.09F},
                                      .scale_m = 0.14F,
                                      .gloss = 0.07F,
-                                     .roughness_rad = 0.05F,
+                                     .roughness_rad = 0.03F,
                                      .seed = 11});
     Box(0, 0, -0.05, kHallHalfLength_m, kHallHalfWidth_m, 0.05, wood);
   }
@@ -122,8 +122,8 @@ class Builder {
     const MaterialIndex green = Paint({0.03F, 0.26F, 0.10F});
     for (const double side : {-1.0, 1.0}) {
       const double turn = side > 0 ? pi / 2 : -pi / 2;  // handball, 6 m
-      Arc({side * 19.4, 1.5}, 6, turn, turn + pi / 2, 0.002, yellow);
-      Arc({side * 19.4, -1.5}, 6, turn + pi / 2, turn + pi, 0.002, yellow);
+      Arc({side * 19.4, side * 1.5}, 6, turn, turn + pi / 2, 0.002, yellow);
+      Arc({side * 19.4, -side * 1.5}, 6, turn + pi / 2, turn + pi, 0.002, yellow);
       Line({side * 13.4, -1.5}, {side * 13.4, 1.5}, 0.002, yellow);
       Arc({side * 12.4, 0}, 6.75, turn, turn + pi, 0.003, blue);  // basketball
       Rectangle(side * 14, side * 8.2, 2.45, 0.003, blue);
@@ -289,7 +289,7 @@ class Builder {
 
   void Lamps() {
     const MaterialIndex tube = Paint({0.95F, 0.95F, 0.95F});
-    stage_.lighting.ambient = {0.40F, 0.41F, 0.42F};
+    stage_.lighting.ambient = {0.27F, 0.28F, 0.29F};
     stage_.lighting.sky = {0.6F, 0.6F, 0.6F};
     for (const double x : {-11.0, 11.0}) {
       for (const double y : {-6.0, 6.0}) {
@@ -297,7 +297,7 @@ class Builder {
         lamp.center_m = {static_cast<float>(x), static_cast<float>(y), 9.6F};
         lamp.half_u_m = {2.5F, 0, 0};
         lamp.half_v_m = {0, 0.8F, 0};
-        lamp.color = {0.17F, 0.165F, 0.15F};
+        lamp.color = {0.22F, 0.213F, 0.195F};
         stage_.lighting.lamps.push_back(lamp);
         Box(x, y, 9.8, 2.5, 0.8, 0.05, tube);
       }

@@ -406,7 +406,8 @@ void Play::WishOfKeeper(int team, Walker& walker) const {
   }
   walker.pace_m_s = far < 9 ? 0.6 : 0.35;
   walker.look_at_m = ball;
-  walker.crouch = far < 14 ? 0.9 : far > 26 ? 0.35 : walker.crouch;
+  if (far < 20) walker.crouch = 0.9;  // on the knees, nearly
+  if (far > 25) walker.crouch = 0.3;
   walker.arm_reach = walker.crouch > 0.5 ? 0.6 : 0.1;
 }
 

@@ -81,6 +81,18 @@ TEST(Floorball, EveryPlaceInTheRinkIsSeenByThreeCamerasAndByOneOfTheFirstThree) 
   }
 }
 
+TEST(Floorball, LensesReachTheCornersOfTheirPictures) {
+  for (const StageCamera& camera : Floorball().cameras) {
+    // The upper corners look above the horizon: at the ceiling.
+    EXPECT_TRUE(camera.camera.WorldFromImage({0, 767}));
+    EXPECT_TRUE(camera.camera.WorldFromImage({959, 767}));
+    EXPECT_TRUE(camera.camera.WorldFromImage({0, 0}, 40) ||
+                camera.camera.WorldFromImage({0, 0}, 0));
+    EXPECT_TRUE(camera.camera.WorldFromImage({959, 0}, 40) ||
+                camera.camera.WorldFromImage({959, 0}, 0));
+  }
+}
+
 TEST(Floorball, ScalesAndLeavesOutCameras) {
   PresetOptions options = Short(3);
   options.cameras = 3;
