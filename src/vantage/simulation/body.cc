@@ -66,7 +66,7 @@ Gait GaitOf(double speed_m_s, double height_m) {
   gait.run = Smooth(1.8, 2.8, speed_m_s);
   gait.moving = Smooth(0, 1.2, speed_m_s);
   gait.sweep = gait.stride * gait.duty;
-  gait.ahead = 0.44 * gait.sweep;
+  gait.ahead = std::lerp(0.44, 0.36, gait.run) * gait.sweep;
   gait.pelvis = 0.04 * gait.moving;
   return gait;
 }
