@@ -77,17 +77,17 @@ std::vector<Walker> InventedPeople(FrameIndex frames, Dice& dice) {
   const std::vector<Pillar> pillars = CampusPillars();
   const double seconds = static_cast<double>(frames) / kFramesPerSecond;
   std::vector<Pedestrian> people;
-  for (double enters = -75; enters < seconds; enters += dice.Uniform(9, 14)) {
+  double enters = -75;
+  while (enters < seconds) {
     const double draw = dice.Uniform(0, 1);
     const int members = draw < 0.45 ? 1 : (draw < 0.8 ? 2 : 3);
     const auto& from = gates[static_cast<std::size_t>(dice.Below(static_cast<int>(gates.size())))];
     const auto& to = gates[static_cast<std::size_t>(dice.Below(static_cast<int>(gates.size())))];
     std::vector<Stop> common;
     for (const Vector2d& place : from) common.push_back({place});
-    const int errands = 2 + dice.Below(3);
-    const int talk = dice.Below(errands);
+    const int errands = 3 + dice.Below(3);
     for (int errand = 0; errand < errands; ++errand) {
-      const double stay = errand == talk ? dice.Uniform(8, 26) : 0;
+      const double stay = dice.Chance(0.45) ? dice.Uniform(6, 20) : 0;
       const Vector2d place = PlaceInArea(pillars, dice);
       // Who is alone looks about, a group looks at its middle.
       const Vector2d aside = {dice.Uniform(-5, 5), dice.Uniform(-5, 5)};
@@ -105,6 +105,7 @@ std::vector<Walker> InventedPeople(FrameIndex frames, Dice& dice) {
       for (Stop& stop : who.stops) stop.ground_m += offset;
       people.push_back(who);
     }
+    enters += members * dice.Uniform(6.5, 8.5);  // the larger the group, the longer until the next
   }
   std::vector<Walker> walkers;
   for (Walk& walk : Stroll(people, pillars, kFramesPerSecond, frames)) {

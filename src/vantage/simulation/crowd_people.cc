@@ -20,7 +20,8 @@ constexpr int kColumns = 480;
 constexpr int kRows = 1440;
 constexpr double kCell = 0.025;                   // m
 const Eigen::Vector2d kFirstCell = {-3.0, -9.0};  // m
-constexpr int kMaxPerson = 999'999;
+/// Higher ids are for the parts of people that the annotation confuses.
+constexpr int kMaxPerson = 10'000;
 constexpr int kMaxFrame = 100'000'000;
 
 /// The frame in a file's name, eight digits.

@@ -17,12 +17,12 @@ namespace vantage::simulation {
 /// What a preset may be asked for; each has defaults of its own for what is not given.
 struct PresetOptions {
   std::uint64_t seed = 1;
-  std::optional<FrameIndex> frames;  ///< 1 to 100000
-  std::optional<int> cameras;        ///< the first so many, 1 to as many as the preset has
-  double scale = 1;                  ///< of the pictures' sides, 0.1 to 2
+  std::optional<FrameIndex> frames = std::nullopt;  ///< 1 to 100000
+  std::optional<int> cameras = std::nullopt;  ///< the first so many, 1 to as many as the preset has
+  double scale = 1;                           ///< of the pictures' sides, 0.1 to 2
   /// Truth of a real recording whose people walk here (campus: a MOTChallenge file with ground
   /// positions; crowd: a folder with annotations_positions/); empty: invented people.
-  std::filesystem::path people;
+  std::filesystem::path people = {};
 };
 
 struct Preset {

@@ -60,28 +60,47 @@ const Gate& BestGate(const std::vector<Gate>& gates, const Vector2d& from,
   return *best;
 }
 
-/// Waypoints from `from` (left out) into the gate at walking speed, or as far as `secs` lead.
-std::vector<Waypoint> IntoGate(const Waypoint& from, const Gate& gate, double secs) {
+/// Waypoints from `from` (left out) into the gate at walking speed.
+std::vector<Waypoint> IntoGate(const Waypoint& from, const Gate& gate) {
   std::vector<Waypoint> way;
   Waypoint at = from;
   for (auto place = gate.rbegin(); place != gate.rend(); ++place) {
-    const double leg = std::max((*place - at.ground_m).norm() / kWalkingSpeed, 0.05);
-    const double left = from.seconds + secs - at.seconds;
-    if (left <= 0.05) break;
-    const double share = std::min(1.0, left / leg);
-    at = {at.seconds + share * leg, at.ground_m + share * (*place - at.ground_m)};
+    const double secs = std::max((*place - at.ground_m).norm() / kWalkingSpeed, 0.05);
+    at = {at.seconds + secs, *place};
     way.push_back(at);
-    if (share < 1) break;
   }
   return way;
 }
 
 /// The same way backwards in time: from the gate to `to` (left out).
-std::vector<Waypoint> OutOfGate(const Waypoint& to, const Gate& gate, double secs) {
-  std::vector<Waypoint> way = IntoGate({-to.seconds, to.ground_m}, gate, secs);
+std::vector<Waypoint> OutOfGate(const Waypoint& to, const Gate& gate) {
+  std::vector<Waypoint> way = IntoGate({-to.seconds, to.ground_m}, gate);
   for (Waypoint& waypoint : way) waypoint.seconds = -waypoint.seconds;
   std::reverse(way.begin(), way.end());
   return way;
+}
+
+/// What is done between two places known with a long time between them: into the gate and back,
+/// else as far towards it as walking there and back takes no longer, else straight on.
+std::vector<Waypoint> Excursion(const Waypoint& from, const Waypoint& to, const Gate& gate) {
+  constexpr int kSteps = 20;
+  std::vector<Waypoint> in = IntoGate(from, gate);
+  const std::vector<Waypoint> out = OutOfGate(to, gate);
+  if (in.back().seconds < out.front().seconds) {
+    in.insert(in.end(), out.begin(), out.end());
+    return in;
+  }
+  const double secs = to.seconds - from.seconds;
+  for (int step = kSteps; step > 0; --step) {
+    const Vector2d turn =
+        from.ground_m + static_cast<double>(step) / kSteps * (gate.back() - from.ground_m);
+    const double there = (turn - from.ground_m).norm();
+    const double back = (turn - to.ground_m).norm();
+    if (there > 0.1 && back > 0.1 && there + back <= secs * kWalkingSpeed) {
+      return {{from.seconds + secs * there / (there + back), turn}};
+    }
+  }
+  return {};
 }
 
 /// Mean velocity over about a second from (or, with `step` -1, up to) one of the known waypoints.
@@ -141,26 +160,20 @@ Vector2d Way::At(double seconds) const {
 
 std::vector<Waypoint> ThroughGates(const std::vector<Waypoint>& known,
                                    const std::vector<Gate>& gates, double max_gap_secs) {
-  constexpr double kAnyTime = 1e6;
   const auto leave = [&](std::size_t i) -> const Gate& {
     return BestGate(gates, known[i].ground_m, Velocity(known, i, -1));
   };
   const auto arrive = [&](std::size_t i) -> const Gate& {
     return BestGate(gates, known[i].ground_m, -Velocity(known, i, 1));
   };
-  std::vector<Waypoint> way = OutOfGate(known.front(), arrive(0), kAnyTime);
+  std::vector<Waypoint> way = OutOfGate(known.front(), arrive(0));
   for (std::size_t i = 0; i < known.size(); ++i) {
     way.push_back(known[i]);
     if (i + 1 == known.size()) continue;
-    const double gap = known[i + 1].seconds - known[i].seconds;
-    if (gap <= max_gap_secs) continue;
-    // Out and back in through the same gate, since the way between two gates is not known to be
-    // free. A little less than half of the time each leaves a moment to turn in.
-    const Gate& gate = leave(i);
-    for (const Waypoint& w : IntoGate(known[i], gate, 0.45 * gap)) way.push_back(w);
-    for (const Waypoint& w : OutOfGate(known[i + 1], gate, 0.45 * gap)) way.push_back(w);
+    if (known[i + 1].seconds - known[i].seconds <= max_gap_secs) continue;
+    for (const Waypoint& w : Excursion(known[i], known[i + 1], leave(i))) way.push_back(w);
   }
-  for (const Waypoint& w : IntoGate(known.back(), leave(known.size() - 1), kAnyTime)) {
+  for (const Waypoint& w : IntoGate(known.back(), leave(known.size() - 1))) {
     way.push_back(w);
   }
   return way;

@@ -39,8 +39,8 @@ using Gate = std::vector<Eigen::Vector2d>;
 
 /// What is known of somebody's way (at least one waypoint), completed so that nobody pops up: they
 /// come from the gate that lies best behind their first steps and leave through the one before
-/// their last, and where nothing is known for longer than `max_gap_secs` they go towards a gate,
-/// into it when there is time, and come back. All known waypoints are kept.
+/// their last, and where nothing is known for longer than `max_gap_secs` they go into a gate and
+/// come back, or as far towards it as there is time for. All known waypoints are kept.
 std::vector<Waypoint> ThroughGates(const std::vector<Waypoint>& known,
                                    const std::vector<Gate>& gates, double max_gap_secs);
 
