@@ -19,8 +19,8 @@ const Vector3f kTripodCameras[] = {{-14.64F, -1.67F, 2.11F},
                                    {-2.78F, -16.58F, 2.16F},
                                    {-0.17F, -3.53F, 1.79F}};
 
-const Vector2f kTrees[] = {{7.5F, 14}, {-1.5F, 19}, {10, -15}, {21, -13},  {-19, 7.5F}, {-31, 1},
-                           {-36, -12}, {-4, -37},   {8, -31},  {-30, -48}, {-12, 31},   {12, 30}};
+const Vector2f kTrees[] = {{9.8F, 15}, {-3.9F, 22}, {10, -15}, {21, -13},  {-19, 7.5F}, {-31, 1},
+                           {-36, -12}, {-4, -37},   {8, -31},  {-30, -48}, {-12, 31},   {18, 33}};
 
 void LayGround(Stage& stage, Dice& dice) {
   const auto add = [&](const Material& material) { return AddMaterial(stage.materials, material); };
@@ -31,9 +31,9 @@ void LayGround(Stage& stage, Dice& dice) {
                                    .scale_m = 0.12F,
                                    .seed = dice.Seed()});
   const MaterialIndex asphalt = add({.pattern = Pattern::kSpeckle,
-                                     .color = {0.20F, 0.205F, 0.21F},
-                                     .second = {0.155F, 0.16F, 0.165F},
-                                     .scale_m = 0.5F,
+                                     .color = {0.20F, 0.20F, 0.205F},
+                                     .second = {0.125F, 0.125F, 0.13F},
+                                     .scale_m = 0.9F,
                                      .seed = dice.Seed()});
   const MaterialIndex dark = add({.pattern = Pattern::kSpeckle,
                                   .color = {0.11F, 0.11F, 0.115F},
@@ -63,10 +63,10 @@ void LayGround(Stage& stage, Dice& dice) {
     Vector2f from, to;
     float width_m;
   };
-  const Piece roads[] = {
-      {{-7.5F, 60}, {-7.5F, -1}, 4.9F},    {{-7.4F, 1}, {-9.4F, -9}, 6.2F},
-      {{-8.6F, -6}, {-12.6F, -20}, 8.4F},  {{-12.3F, -19}, {-26, -70}, 8.2F},
-      {{-9.5F, -8.2F}, {80, -3.0F}, 6.6F}, {{-8.5F, -5.5F}, {-1.5F, -6.4F}, 4.4F}};
+  const Piece roads[] = {{{-7.5F, 60}, {-7.5F, -1}, 4.9F},      {{-7.5F, 1}, {-8.4F, -6}, 5.5F},
+                         {{-7.9F, -3}, {-9.6F, -9.5F}, 6.2F},   {{-8.6F, -6}, {-12.6F, -20}, 8.4F},
+                         {{-12.3F, -19}, {-26, -70}, 8.2F},     {{-9.5F, -8.2F}, {80, -3.0F}, 6.6F},
+                         {{-8.5F, -5.5F}, {-1.5F, -6.4F}, 4.4F}};
   float height_mm = 1.0F;
   for (const Piece& road : roads) {
     add_block(GroundLine(road.from, road.to, road.width_m + 0.3F, height_mm, kerb));
@@ -119,7 +119,7 @@ void BuildHouses(Stage& stage, Dice& dice) {
   const MaterialIndex red = add({.color = {0.22F, 0.05F, 0.03F}});
   const MaterialIndex light = add({.color = {0.45F, 0.44F, 0.42F}});
   const House houses[] = {{{21.5F, 5}, {8.5F, 6.2F}, 7, 0.094F, brick, glass, red},
-                          {{32, 46}, {17, 5}, 7, -0.4F, brick, glass, light},
+                          {{43, 46}, {17, 5}, 7, -0.25F, brick, glass, light},
                           {{-22, 16}, {9.5F, 4}, 6.5F, 0, pale, glass, light},
                           {{-20, -72}, {30, 5}, 9.5F, 0, brick, glass, light},
                           {{45, -28}, {6, 15}, 7, 0.1F, pale, glass, red},
@@ -173,7 +173,8 @@ void PlaceThings(Stage& stage, Dice& dice) {
   }
   for (const Vector2f& at : {Vector2f(-12.2F, -1.7F), Vector2f(-0.9F, -11.6F),
                              Vector2f(-3.4F, -12.4F), Vector2f(-5.7F, -13.9F)}) {
-    stage.limbs.push_back({{at.x(), at.y(), 0.1F}, {at.x(), at.y(), 0.45F}, 0.3F, 0.14F, stone});
+    stage.limbs.push_back(
+        {{at.x(), at.y(), 0.1F}, {at.x() + 0.1F, at.y(), 0.3F}, 0.3F, 0.16F, stone});
   }
 
   const MaterialIndex glass = add({.color = {0.03F, 0.04F, 0.05F}, .gloss = 0.08F});
@@ -181,7 +182,6 @@ void PlaceThings(Stage& stage, Dice& dice) {
   const MaterialIndex rear = add({.color = {0.5F, 0.04F, 0.03F}});
   Build(stage, Placed(Car({white, glass, black, rear}, true), {20.5F, -3.6F, 0.01F}, 0.06F));
   Build(stage, Placed(Car({teal, glass, black, rear}, false), {27, -3.3F, 0.01F}, 0.06F));
-  Build(stage, Placed(Car({teal, glass, black, rear}, false), {-0.6F, 13.5F, 0.01F}, 0));
 }
 
 }  // namespace
@@ -194,12 +194,12 @@ void BuildCampus(Stage& stage, Rehearsal& rehearsal, double seconds, Dice& dice)
   AddTrees(stage, rehearsal, {std::begin(kTrees), std::end(kTrees)}, 5, 8, 50, dice);
 
   // A low sun in the south-west between clouds.
-  stage.lighting.ambient = {0.50F, 0.53F, 0.58F};
-  stage.lighting.sky = {0.62F, 0.68F, 0.78F};
+  stage.lighting.ambient = {0.42F, 0.45F, 0.50F};
+  stage.lighting.sky = {0.46F, 0.52F, 0.60F};
   stage.lighting.lamps.push_back({.center_m = {-90, -110, 140},
                                   .half_u_m = {1.55F, -1.27F, 0},
                                   .half_v_m = {0.9F, 1.1F, 1.44F},
-                                  .color = {0.85F, 0.78F, 0.68F}});
+                                  .color = {1.05F, 0.97F, 0.85F}});
   rehearsal.lights = {{}, Clouds(seconds, dice)};
 }
 

@@ -157,12 +157,12 @@ void BuildSquare(Stage& stage, Rehearsal& rehearsal, double seconds, Dice& dice)
     stage.blocks.push_back({{19.6F, y, 0.55F}, {0.05F, 0.05F, 0.55F}, 0, metal});
   }
 
-  stage.lighting.ambient = {0.55F, 0.57F, 0.61F};
-  stage.lighting.sky = {0.68F, 0.72F, 0.80F};
+  stage.lighting.ambient = {0.46F, 0.48F, 0.52F};
+  stage.lighting.sky = {0.48F, 0.53F, 0.60F};
   stage.lighting.lamps.push_back({.center_m = {70, -60, 170},
                                   .half_u_m = {1.3F, 1.5F, 0},
                                   .half_v_m = {-1.3F, 1.1F, 0.9F},
-                                  .color = {0.75F, 0.70F, 0.62F}});
+                                  .color = {0.95F, 0.89F, 0.80F}});
   rehearsal.lights = {{}, Clouds(seconds, dice)};
 }
 

@@ -33,8 +33,8 @@ struct Part {
   std::vector<Cue> cues;  ///< not there before the first one and after the last one
 };
 
-/// The persons of the play, ids from 1. The door is at (-3, 12.5); the picture's sides are at about
-/// x = -+9 where y is 5.
+/// The persons of the play, ids from 1. The door is at (-2.4, 12.5); the picture's sides are at
+/// about x = -+6.5 where y is 5.
 const std::vector<Part>& Parts() {
   static const std::vector<Part> parts = {
       {"stands there from the start, leaves (a ghost stays), comes back later and stays",
@@ -50,8 +50,8 @@ const std::vector<Part>& Parts() {
        {{0, kBenchLeft, -90, 1},
         {14, kBenchLeft, -90, 1},
         {15.8, {-6.45, 8.15}, -90, 0},
-        {20, {-3, 11.0}},
-        {21.5, {-3, 13.3}}}},
+        {20, {-2.4, 11.0}},
+        {21.5, {-2.4, 13.3}}}},
       {"comes, stands still for twenty seconds, leaves",
        {{2, {12.5, 1.4}},
         {8.6, {3.6, 3.3}},
@@ -67,8 +67,8 @@ const std::vector<Part>& Parts() {
         {30, kBenchRight, -90, 1},
         {kForever, kBenchRight, -90, 1}}},
       {"comes out with a bag, puts it down, leaves without it",
-       {{4, {-3, 13.3}},
-        {5.5, {-3, 11.0}},
+       {{4, {-2.4, 13.3}},
+        {5.5, {-2.4, 11.0}},
         {8.6, {-1.3, 7.9}, -80},
         {9.2, {-1.3, 7.9}, -80},
         {10.2, {-1.3, 7.9}, -80, 0, 1},
@@ -81,8 +81,8 @@ const std::vector<Part>& Parts() {
         {22.4, {2.4, 9.4}, 180},
         {23.4, {2.4, 9.4}, 180, 0, 1},
         {24.4, {2.4, 9.4}, 180},
-        {28.5, {-2.8, 10.7}},
-        {30.2, {-3, 13.3}}}},
+        {28.5, {-2.3, 10.7}},
+        {30.2, {-2.4, 13.3}}}},
       {"creeps across the ghost that the first one has left",
        {{1, {-2.6, -6.5}},
         {9, {-1.7, 5.0}},
@@ -193,15 +193,15 @@ std::vector<Placement> DriveOff(FrameIndex frames) {
 }
 
 Camera ForecourtCamera() {
-  // Four and a half metres up, ten before the middle, 20 degrees down.
-  const double down = 20 * std::numbers::pi / 180;
+  // Four and a half metres up, ten before the middle, 12 degrees down.
+  const double down = 12 * std::numbers::pi / 180;
   CameraPose pose;
   pose.rotation << 1, 0, 0,                 //
       0, -std::sin(down), -std::cos(down),  //
       0, std::cos(down), -std::sin(down);
   pose.translation_m = -pose.rotation * Eigen::Vector3d(0, -10, 4.6);
   const PinholeModel lens{
-      .fx_px = 560, .fy_px = 560, .cx_px = 319.5, .cy_px = 239.5, .distortion = {-0.12, 0.02}};
+      .fx_px = 760, .fy_px = 760, .cx_px = 319.5, .cy_px = 239.5, .distortion = {-0.12, 0.02}};
   return Camera::Create({640, 480}, lens, pose).value();
 }
 

@@ -17,9 +17,9 @@ using Pattern = Material::Pattern;
 void LayGround(Stage& stage, Dice& dice) {
   const auto add = [&](const Material& material) { return AddMaterial(stage.materials, material); };
   const MaterialIndex asphalt = add({.pattern = Pattern::kSpeckle,
-                                     .color = {0.17F, 0.17F, 0.175F},
-                                     .second = {0.12F, 0.12F, 0.125F},
-                                     .scale_m = 0.35F,
+                                     .color = {0.185F, 0.185F, 0.19F},
+                                     .second = {0.105F, 0.105F, 0.11F},
+                                     .scale_m = 0.5F,
                                      .seed = dice.Seed()});
   const MaterialIndex paving = add({.pattern = Pattern::kBricks,
                                     .color = {0.33F, 0.27F, 0.21F},
@@ -63,14 +63,14 @@ void BuildOffice(Stage& stage, Dice& dice) {
   const MaterialIndex frame = add({.color = {0.5F, 0.5F, 0.47F}});
   const MaterialIndex dark = add({.color = {0.008F, 0.008F, 0.008F}});
   Build(stage, HouseShape({{0, 17.5F}, {26, 5}, 6.5F, 0, brick, glass, frame}));
-  stage.blocks.push_back({{-3, 12.46F, 1.2F}, {0.8F, 0.01F, 1.2F}, 0, frame});
-  stage.blocks.push_back({{-3, 12.44F, 1.12F}, {0.68F, 0.01F, 1.12F}, 0, dark});
+  stage.blocks.push_back({{-2.4F, 12.46F, 1.3F}, {0.95F, 0.01F, 1.3F}, 0, frame});
+  stage.blocks.push_back({{-2.4F, 12.44F, 1.2F}, {0.8F, 0.01F, 1.2F}, 0, dark});
   const MaterialIndex letters = add({.pattern = Pattern::kLetters,
                                      .color = {0.04F, 0.08F, 0.28F},
                                      .second = {0.65F, 0.65F, 0.6F},
                                      .scale_m = 0.35F,
                                      .seed = dice.Seed()});
-  stage.blocks.push_back({{-3, 12.42F, 2.95F}, {1.6F, 0.03F, 0.35F}, 0, letters});
+  stage.blocks.push_back({{-2.4F, 12.42F, 2.98F}, {1.6F, 0.03F, 0.35F}, 0, letters});
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ void BuildForecourt(Stage& stage, Rehearsal& rehearsal, Dice& dice) {
   for (const float x : {1.8F, 2.6F}) {
     stage.limbs.push_back({{x, 1.84F, 0}, {x, 1.84F, 1.4F}, 0.03F, 0.03F, metal});
   }
-  AddTrees(stage, rehearsal, {{-8.6F, 7.2F}, {8.5F, 10.6F}, {-13, -2}}, 4.2, 5.6, 70, dice);
+  AddTrees(stage, rehearsal, {{-8.0F, 9.9F}, {8.3F, 10.6F}, {-13, -2}}, 4.2, 5.6, 70, dice);
   // A bare young tree in front: thin branches that break people into pieces.
   const MaterialIndex bark = add({.color = {0.09F, 0.07F, 0.05F}});
   const Vector3f foot = {-2.5F, 1.5F, 0};
@@ -112,13 +112,13 @@ void BuildForecourt(Stage& stage, Rehearsal& rehearsal, Dice& dice) {
          bark});
   }
 
-  stage.lighting.ambient = {0.45F, 0.47F, 0.52F};
-  stage.lighting.sky = {0.6F, 0.67F, 0.8F};
+  stage.lighting.ambient = {0.38F, 0.41F, 0.47F};
+  stage.lighting.sky = {0.42F, 0.50F, 0.62F};
   stage.lighting.lamps.push_back({.center_m = {-80, -90, 120},
                                   .half_u_m = {1.5F, -1.3F, 0},
                                   .half_v_m = {0.9F, 1.0F, 1.4F},
-                                  .color = {0.85F, 0.78F, 0.68F}});
-  stage.lighting.lamps.push_back({.center_m = {-3, 11.6F, 4.2F},
+                                  .color = {1.05F, 0.97F, 0.85F}});
+  stage.lighting.lamps.push_back({.center_m = {-2.4F, 11.6F, 4.2F},
                                   .half_u_m = {0.5F, 0, 0},
                                   .half_v_m = {0, 0.1F, 0},
                                   .color = {0.30F, 0.26F, 0.17F}});
@@ -142,7 +142,7 @@ Shape BagShape(Stage& stage, Dice& dice) {
 
 Shape GhostCarShape(Stage& stage) {
   const auto add = [&](const Material& material) { return AddMaterial(stage.materials, material); };
-  return Car({add({.color = {0.10F, 0.17F, 0.38F}, .gloss = 0.04F}),
+  return Car({add({.color = {0.03F, 0.06F, 0.20F}, .gloss = 0.03F}),
               add({.color = {0.03F, 0.035F, 0.04F}, .gloss = 0.08F}),
               add({.color = {0.015F, 0.015F, 0.015F}}), add({.color = {0.6F, 0.55F, 0.45F}})},
              false);
