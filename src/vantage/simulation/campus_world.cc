@@ -213,7 +213,7 @@ std::vector<Pillar> CampusPillars() {
 }
 
 std::vector<Gate> CampusGates() {
-  return {{{-5, -27.5}, {-6.5, -20.5}},        // south, below View 2
+  return {{{-0.3, -27.5}, {-6, -20.5}},        // south, below View 2
           {{-25, -3}, {-20, -5}},              // west, across the lawn
           {{-22, 25}, {-10, 24}, {-8.5, 14}},  // north, behind the house
           {{33, 5}, {34, -5.8}, {14, -7}}};    // east, behind the brick house

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace vantage::simulation {
 namespace {
@@ -21,7 +22,6 @@ constexpr double kStepSecs = 0.05;        // at most
 
 /// One of them during the simulation.
 struct Mover {
-  bool present = false;
   bool gone = false;
   std::size_t stop = 1;  // the next one
   double stayed_secs = 0;
@@ -31,7 +31,7 @@ struct Mover {
 };
 
 bool Stays(const Pedestrian& who, const Mover& mover) {
-  return mover.stayed_secs > 0 && !mover.gone && who.stops[mover.stop].stay_secs > 0;
+  return mover.stayed_secs > 0 && who.stops[mover.stop].stay_secs > 0;
 }
 
 /// The velocity wished for: towards the next stop, slowing down where they will stay.
@@ -90,39 +90,43 @@ std::vector<Walk> Stroll(const std::vector<Pedestrian>& people, const std::vecto
   const auto steps_a_frame =
       static_cast<int>(std::ceil(1 / (frames_per_second * kStepSecs) - 1e-9));
   const double step_secs = 1 / (frames_per_second * steps_a_frame);
-  double earliest = 0;
-  for (const Pedestrian& who : people) earliest = std::min(earliest, who.enters_secs);
-  const auto first = static_cast<FrameIndex>(std::floor(earliest * frames_per_second));
-  for (FrameIndex frame = first; frame < frames; ++frame) {
-    for (std::size_t i = 0; i < people.size(); ++i) {
-      Mover& mover = movers[i];
-      if (!mover.present && !mover.gone &&
-          people[i].enters_secs * frames_per_second <= static_cast<double>(frame)) {
-        mover.present = true;
-        mover.place = people[i].stops.front().ground_m;
-      }
-      if (mover.gone) mover.present = false;
-      if (!mover.present || frame < 0) continue;
+  const auto entering = [&](std::size_t i) {
+    return static_cast<FrameIndex>(std::ceil(people[i].enters_secs * frames_per_second));
+  };
+  std::vector<std::size_t> waiting(people.size());  // the next one at the back
+  std::iota(waiting.begin(), waiting.end(), std::size_t{0});
+  std::stable_sort(waiting.begin(), waiting.end(),
+                   [&](std::size_t a, std::size_t b) { return entering(a) > entering(b); });
+  std::vector<std::size_t> present;
+  FrameIndex frame = waiting.empty() ? frames : std::min<FrameIndex>(0, entering(waiting.back()));
+  for (; frame < frames; ++frame) {
+    for (; !waiting.empty() && entering(waiting.back()) <= frame; waiting.pop_back()) {
+      movers[waiting.back()].place = people[waiting.back()].stops.front().ground_m;
+      present.push_back(waiting.back());
+    }
+    std::erase_if(present, [&](std::size_t i) { return movers[i].gone; });
+    for (const std::size_t i : present) {
+      if (frame < 0) continue;
       if (walks[i].ground_m.empty()) walks[i].first = frame;
-      walks[i].ground_m.push_back(mover.place);
-      walks[i].look_at_m.push_back(Stays(people[i], mover) ? people[i].stops[mover.stop].look_at_m
-                                                           : std::nullopt);
+      walks[i].ground_m.push_back(movers[i].place);
+      walks[i].look_at_m.push_back(
+          Stays(people[i], movers[i]) ? people[i].stops[movers[i].stop].look_at_m : std::nullopt);
     }
     for (int step = 0; step < steps_a_frame; ++step) {
-      for (std::size_t i = 0; i < people.size(); ++i) {
+      for (const std::size_t i : present) {
         Mover& mover = movers[i];
-        if (!mover.present || mover.gone) continue;
+        if (mover.gone) continue;
         mover.force = (WishedVelocity(people[i], mover) - mover.velocity) / kRelaxationSecs;
-        for (std::size_t k = 0; k < people.size(); ++k) {
-          if (k == i || !movers[k].present || movers[k].gone) continue;
+        for (const std::size_t k : present) {
+          if (k == i || movers[k].gone) continue;
           mover.force += Repulsion(mover.place, movers[k].place, 2 * kBodyRadius);
         }
         for (const Pillar& pillar : pillars) {
           mover.force += Repulsion(mover.place, pillar.center_m, kBodyRadius + pillar.radius_m);
         }
       }
-      for (std::size_t i = 0; i < people.size(); ++i) {
-        if (movers[i].present && !movers[i].gone) Advance(people[i], movers[i], step_secs);
+      for (const std::size_t i : present) {
+        if (!movers[i].gone) Advance(people[i], movers[i], step_secs);
       }
     }
   }

@@ -24,17 +24,25 @@ double MonotoneTangent(double secant_before, double span_before, double secant_a
   return (w1 + w2) / (w1 / secant_before + w2 / secant_after);
 }
 
-/// Gaussian means of a sequence, its ends repeated.
+/// Gaussian means of a sequence, which goes on beyond its ends as its mirror image through them:
+/// steady motion stays steady.
 std::vector<Vector2d> Smoothed(const std::vector<Vector2d>& values, double sigma_frames) {
   const int reach = static_cast<int>(std::ceil(3 * sigma_frames));
   const int count = static_cast<int>(values.size());
+  const auto at = [&](int i) -> Vector2d {
+    const int within = std::clamp(i, 0, count - 1);
+    const Vector2d& end = values[static_cast<std::size_t>(within)];
+    if (within == i) return end;
+    const int mirrored = std::clamp(2 * within - i, 0, count - 1);
+    return end + (end - values[static_cast<std::size_t>(mirrored)]);
+  };
   std::vector<Vector2d> smooth(values.size());
   for (int i = 0; i < count; ++i) {
     Vector2d sum = {0, 0};
     double weights = 0;
     for (int k = -reach; k <= reach; ++k) {
       const double weight = std::exp(-0.5 * (k / sigma_frames) * (k / sigma_frames));
-      sum += weight * values[static_cast<std::size_t>(std::clamp(i + k, 0, count - 1))];
+      sum += weight * at(i + k);
       weights += weight;
     }
     smooth[static_cast<std::size_t>(i)] = sum / weights;
@@ -153,9 +161,9 @@ Vector2d Way::At(double seconds) const {
   // Cubic Hermite polynomials.
   const double t2 = t * t;
   const double t3 = t2 * t;
-  return (2 * t3 - 3 * t2 + 1) * waypoints_[i].ground_m +
-         (t3 - 2 * t2 + t) * span * velocities_m_s_[i] +
-         (3 * t2 - 2 * t3) * waypoints_[i + 1].ground_m + (t3 - t2) * span * velocities_m_s_[i + 1];
+  const Vector2d& from = waypoints_[i].ground_m;
+  return from + (3 * t2 - 2 * t3) * (waypoints_[i + 1].ground_m - from) +
+         (t3 - 2 * t2 + t) * span * velocities_m_s_[i] + (t3 - t2) * span * velocities_m_s_[i + 1];
 }
 
 std::vector<Waypoint> ThroughGates(const std::vector<Waypoint>& known,
