@@ -127,7 +127,7 @@ Result<Stage> MakeCrowd(const PresetOptions& options) {
   VANTAGE_ASSIGN_OR_RETURN(stage.area, Polygon::Rectangle(kAreaMin, kAreaMax));
   PresetOptions reduced = options;
   reduced.scale *= kPictureScale;
-  VANTAGE_ASSIGN_OR_RETURN(stage.cameras, SetUpCameras("crowd", CrowdCameras(), reduced, 1.4));
+  VANTAGE_ASSIGN_OR_RETURN(stage.cameras, SetUpCameras("crowd", CrowdCameras(), reduced, 1.15));
   Dice dice(options.seed);
   Rehearsal rehearsal;
   rehearsal.frames_per_second = kFramesPerSecond;

@@ -218,7 +218,7 @@ Result<Stage> MakeGhosts(const PresetOptions& options) {
   stage.frames = options.frames.value_or(kFrames);
   VANTAGE_ASSIGN_OR_RETURN(stage.area, Polygon::Rectangle({-8, 0}, {8, 12}));
   VANTAGE_ASSIGN_OR_RETURN(stage.cameras,
-                           SetUpCameras("ghosts", {{"camera1", ForecourtCamera()}}, options, 1.5));
+                           SetUpCameras("ghosts", {{"camera1", ForecourtCamera()}}, options, 1.35));
   Dice dice(options.seed);
   Rehearsal rehearsal;
   rehearsal.frames_per_second = kFramesPerSecond;

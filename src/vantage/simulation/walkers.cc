@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace vantage::simulation {
 namespace {
@@ -14,6 +15,7 @@ using Eigen::Vector2d;
 constexpr double kWalkingSpeed = 1.3;  // m/s, of people of whom nothing else is known
 constexpr double kSmoothingSecs = 0.35;
 constexpr double kTurningSpeed = 0.25;  // m/s: slower people look around
+constexpr double kFastestTurn = 6;      // rad/s
 
 /// Tangent of a monotone cubic between two secants over spans of these lengths.
 double MonotoneTangent(double secant_before, double span_before, double secant_after,
@@ -236,10 +238,12 @@ std::vector<Posture> Postures(const Walk& walk, double frames_per_second, double
   directions = Smoothed(directions, sigma);
   double gait = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    // A sequence that turns by exactly half a circle has a zero mean in the middle.
-    postures[i].heading_rad = directions[i].norm() > 1e-9
-                                  ? std::atan2(directions[i].y(), directions[i].x())
-                                  : (i > 0 ? postures[i - 1].heading_rad : 0);
+    // Mean directions of a turn by half a circle jump, or vanish in its middle.
+    const double towards = std::atan2(directions[i].y(), directions[i].x());
+    const double before = i == 0 ? towards : postures[i - 1].heading_rad;
+    const double turn = std::remainder(towards - before, 2 * std::numbers::pi);
+    const double most = kFastestTurn / frames_per_second;
+    postures[i].heading_rad = before + std::clamp(turn, -most, most);
     gait = AdvanceGait(gait, postures[i].speed_m_s, height_m, 1 / frames_per_second);
     postures[i].gait = gait;
   }
