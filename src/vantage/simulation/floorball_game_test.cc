@@ -201,7 +201,7 @@ TEST(Boards, AreFarthestFromTheMiddleAndRoundInTheCorners) {
   EXPECT_NEAR(GapToBoards({0, 11}), -1, 1e-9);
   Dice dice(3);
   for (int i = 0; i < 200; ++i) {
-    const Vector2d place(dice.Between(-25, 25), dice.Between(-15, 15));
+    const Vector2d place(dice.Uniform(-25, 25), dice.Uniform(-15, 15));
     EXPECT_GE(GapToBoards(WithinBoards(place, 0.5)), 0.5 - 1e-9);
     if (GapToBoards(place) > 0.5) {
       EXPECT_NEAR((WithinBoards(place, 0.5) - place).norm(), 0, 1e-9);

@@ -245,7 +245,7 @@ void Play::Decide(const View& view, double seconds) {
     case State::kLoose: {
       if (BesideGoals(ball) != ball) {  // the keeper's
         team_ = ball.x() < 0 ? 0 : 1;
-        HoldBy(view.squads[static_cast<std::size_t>(team_)].keeper, dice_.Between(1, 2.2));
+        HoldBy(view.squads[static_cast<std::size_t>(team_)].keeper, dice_.Uniform(1, 2.2));
         break;
       }
       for (const int team : {0, 1}) {
