@@ -30,7 +30,7 @@ struct Flags {
 void PrintSceneReport(const Flags& flags, const Scene& scene, const MapsResult& result,
                       const Explanation* explanation, bool as_json) {
   const MapsReport& report = result.report;
-  const double seconds = report.read_secs + report.background_secs + report.occupancy_secs;
+  const double seconds = report.wall_secs;
   if (as_json) {
     nlohmann::ordered_json json = {{"frames", report.frames},
                                    {"cameras", scene.cameras.size()},

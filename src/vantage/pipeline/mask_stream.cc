@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "vantage/base/parallel.h"
-#include "vantage/base/stopwatch.h"
-
 namespace vantage {
 
 Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOptions& options,
@@ -35,7 +32,7 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
   }
   VANTAGE_ASSIGN_OR_RETURN(MultiCameraReader reader,
                            MultiCameraReader::Create(std::move(inputs), scene.first_frame));
-  MaskStream stream(std::move(reader), threads);
+  MaskStream stream(std::move(reader));
   stream.subtractors_ = std::move(subtractors);
   stream.frame_count_ = stream.reader_.frame_count();
   if (scene.frame_count) {
@@ -43,34 +40,49 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
         std::min(stream.frame_count_.value_or(*scene.frame_count), *scene.frame_count);
     stream.limit_ = *scene.frame_count;
   }
+  if (scene.cameras.size() == 1) stream.row_threads_ = threads;
   return stream;
 }
 
-Result<bool> MaskStream::Read(std::vector<cv::Mat>& masks, std::span<const cv::Mat> held) {
-  if (frames_read_ == limit_) return false;
-  Stopwatch stopwatch;
-  VANTAGE_ASSIGN_OR_RETURN(const bool more, reader_.Read(frames_, threads_));
-  stopwatch.LapInto(read_secs_);
-  if (!more) return false;
-  masks.resize(frames_.size());
-  // One camera uses all threads for its rows; several share them.
-  const int row_threads = frames_.size() == 1 ? threads_ : 1;
-  std::vector<Status> statuses(frames_.size());
-  ParallelFor(threads_, static_cast<std::int64_t>(frames_.size()), [&](std::int64_t i) {
-    const auto camera = static_cast<std::size_t>(i);
-    if (frames_[camera].empty()) {
-      masks[camera] = cv::Mat();
-    } else if (subtractors_[camera]) {
-      statuses[camera] = subtractors_[camera]->Apply(frames_[camera], masks[camera], row_threads,
-                                                     held.empty() ? cv::Mat() : held[camera]);
-    } else {
-      frames_[camera].copyTo(masks[camera]);
-    }
-  });
-  stopwatch.LapInto(background_secs_);
-  for (const Status& status : statuses) VANTAGE_RETURN_IF_ERROR(Status(status));
-  ++frames_read_;
-  return true;
+Result<bool> MaskStream::Read(int camera, std::int64_t frame, cv::Mat& picture) {
+  if (frame == limit_) return false;
+  return reader_.ReadCamera(static_cast<std::size_t>(camera), picture);
+}
+
+Status MaskStream::Subtract(int camera, const cv::Mat& picture, const cv::Mat& held,
+                            cv::Mat& mask) {
+  auto& subtractor = subtractors_[static_cast<std::size_t>(camera)];
+  if (picture.empty()) {
+    mask = cv::Mat();
+  } else if (subtractor) {
+    return subtractor->Apply(picture, mask, row_threads_, held);
+  } else {
+    picture.copyTo(mask);
+  }
+  return {};
+}
+
+FlowStage MaskStages::Reading() {
+  return {.lanes = stream_.cameras(),
+          .queue = kPictureQueue,
+          .work = [this](std::int64_t frame, int camera) {
+            return stream_.Read(camera, frame, pictures_[frame][static_cast<std::size_t>(camera)]);
+          }};
+}
+
+FlowStage MaskStages::Background(std::int64_t queue, std::function<const cv::Mat&(int camera)> held,
+                                 std::function<void(int camera, const cv::Mat& mask)> made) {
+  return {.lanes = stream_.cameras(),
+          .queue = queue,
+          .work = [this, held = std::move(held), made = std::move(made)](
+                      std::int64_t frame, int camera) -> Result<bool> {
+            const auto index = static_cast<std::size_t>(camera);
+            cv::Mat& mask = masks[frame][index];
+            VANTAGE_RETURN_IF_ERROR(stream_.Subtract(camera, pictures_[frame][index],
+                                                     held ? held(camera) : cv::Mat(), mask));
+            if (made) made(camera, mask);
+            return true;
+          }};
 }
 
 }  // namespace vantage

@@ -2,54 +2,95 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <memory>
+#include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "vantage/background/subtractor.h"
 #include "vantage/base/result.h"
+#include "vantage/pipeline/flow.h"
 #include "vantage/scene/scene.h"
 #include "vantage/video/multi_camera.h"
 
 namespace vantage {
 
-/// Masks of all cameras of a scene, in step. Colour sources pass through background subtraction;
-/// masks and detection boxes pass as they are.
+/// Masks of all cameras of a scene. Colour sources pass through background subtraction; masks and
+/// detection boxes pass as they are. Each camera is read and judged at its own pace; frames count
+/// from 0, the first that the scene asks for.
 class MaskStream {
  public:
   /// Opens every source. Fails, naming the camera, when one cannot be opened or delivers another
-  /// size than its calibration was made for.
+  /// size than its calibration was made for. `threads` is for the rows of a picture where there is
+  /// one camera only; several share them.
   static Result<MaskStream> Create(const Scene& scene, const BackgroundOptions& options,
                                    int threads);
+
+  int cameras() const { return static_cast<int>(subtractors_.size()); }
 
   /// Frames of the scene that all sources hold and that the scene asks for; none when not known.
   std::optional<std::int64_t> frame_count() const { return frame_count_; }
 
-  /// The next frame: one mask per camera, empty where a camera has no picture now. False at the
-  /// end. `held`, none or one for each camera, is where objects are known to stand
-  /// (BackgroundSubtractor::Apply).
-  Result<bool> Read(std::vector<cv::Mat>& masks, std::span<const cv::Mat> held = {});
+  /// The next picture of a camera; empty when it has none now. False at its end, and after the last
+  /// frame that the scene asks for. Different cameras may be read at the same time.
+  Result<bool> Read(int camera, std::int64_t frame, cv::Mat& picture);
 
-  /// Time spent, all cameras together as wall-clock.
-  double read_secs() const { return read_secs_; }
-  double background_secs() const { return background_secs_; }
+  /// Its mask, CV_8UC1; empty for an empty picture. To be called for the frames in order.
+  /// `held` is where objects are known to stand, or empty (BackgroundSubtractor::Apply). Different
+  /// cameras may be asked at the same time.
+  Status Subtract(int camera, const cv::Mat& picture, const cv::Mat& held, cv::Mat& mask);
+
   const std::vector<std::optional<BackgroundSubtractor>>& subtractors() const {
     return subtractors_;
   }
 
  private:
-  MaskStream(MultiCameraReader reader, int threads)
-      : reader_(std::move(reader)), threads_(threads) {}
+  explicit MaskStream(MultiCameraReader reader) : reader_(std::move(reader)) {}
   MultiCameraReader reader_;
   std::vector<std::optional<BackgroundSubtractor>> subtractors_;  // none: delivers masks
-  std::vector<cv::Mat> frames_;
   std::optional<std::int64_t> frame_count_;
-  std::int64_t frames_read_ = 0;
   std::int64_t limit_ = -1;  // frames that the scene asks for; -1: all
-  int threads_ = 1;
-  double read_secs_ = 0;
-  double background_secs_ = 0;
+  int row_threads_ = 1;
+};
+
+/// What is on its way between stages, one entry for each of the frames that may be at once.
+template <class T>
+class Ring {
+ public:
+  explicit Ring(std::int64_t size, const T& value = {})
+      : entries_(static_cast<std::size_t>(size), value) {}
+  T& operator[](std::int64_t frame) {
+    return entries_[static_cast<std::size_t>(frame) % entries_.size()];
+  }
+
+ private:
+  std::vector<T> entries_;
+};
+
+/// The first two stages of a chain, reading and background, with a lane for each camera. They leave
+/// the masks in masks[frame][camera].
+class MaskStages {
+ public:
+  /// Pictures that wait for the background: a decoder has long frames and short ones.
+  static constexpr std::int64_t kPictureQueue = 4;
+
+  /// `kept`: frames for which the masks of one stay; the queues from the background to the last
+  /// stage that uses them.
+  MaskStages(MaskStream& stream, std::int64_t kept)
+      : masks(kept, std::vector<cv::Mat>(static_cast<std::size_t>(stream.cameras()))),
+        stream_(stream),
+        pictures_(kPictureQueue, std::vector<cv::Mat>(static_cast<std::size_t>(stream.cameras()))) {
+  }
+
+  FlowStage Reading();
+  /// `held`, if any, gives what a camera holds; `made` is told that a camera has made a mask.
+  FlowStage Background(std::int64_t queue, std::function<const cv::Mat&(int camera)> held = {},
+                       std::function<void(int camera, const cv::Mat& mask)> made = {});
+
+  Ring<std::vector<cv::Mat>> masks;
+
+ private:
+  MaskStream& stream_;
+  Ring<std::vector<cv::Mat>> pictures_;
 };
 
 }  // namespace vantage

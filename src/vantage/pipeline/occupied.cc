@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <utility>
@@ -81,7 +82,17 @@ OccupiedRegions::OccupiedRegions(std::vector<Camera> cameras, const PersonOption
       speed_per_frame_m_(options.max_speed / frames_per_second),
       limit_frames_(options.limit_secs * frames_per_second),
       held_(cameras_.size()),
-      ghosts_(cameras_.size()) {}
+      ghosts_(cameras_.size()),
+      pictures_(cameras_.size()),
+      released_px_(cameras_.size()) {}
+
+HoldReport OccupiedRegions::report() const {
+  HoldReport report = report_;
+  report.pictures = std::accumulate(pictures_.begin(), pictures_.end(), std::int64_t{0});
+  report.released_as_ghosts_px =
+      std::accumulate(released_px_.begin(), released_px_.end(), std::int64_t{0});
+  return report;
+}
 
 Result<OccupiedRegions> OccupiedRegions::Create(std::vector<Camera> cameras,
                                                 const PersonOptions& person,
@@ -98,7 +109,7 @@ Result<OccupiedRegions> OccupiedRegions::Create(std::vector<Camera> cameras,
 void OccupiedRegions::Judge(std::size_t camera, const cv::Mat& mask, const GhostVerdict& verdict) {
   cv::Mat& held = held_[camera];
   if (held.empty()) return;
-  ++report_.pictures;
+  ++pictures_[camera];
   cv::Mat& ghosts = ghosts_[camera];
   cv::Mat foreground = mask.clone();  // before ghosts were taken out of it, and the clean-up
   for (const JudgedComponent& piece : verdict.judged) {
@@ -113,7 +124,7 @@ void OccupiedRegions::Judge(std::size_t camera, const cv::Mat& mask, const Ghost
   }
   ghosts.setTo(0, foreground == 0);
   const cv::Mat released = held & (ghosts >= options_.ghost_verdicts);
-  report_.released_as_ghosts_px += cv::countNonZero(released);
+  released_px_[camera] += cv::countNonZero(released);
   held.setTo(0, released);
 }
 

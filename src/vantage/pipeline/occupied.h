@@ -81,14 +81,15 @@ class OccupiedRegions {
   std::span<const cv::Mat> held() const { return held_; }
 
   /// What a camera found in a frame to which held() was applied: its mask, of the camera's size,
-  /// and the verdict on ghosts in it.
+  /// and the verdict on ghosts in it. Different cameras may be judged at the same time, Name not
+  /// meanwhile.
   void Judge(std::size_t camera, const cv::Mat& mask, const GhostVerdict& verdict);
 
   /// `tracks` of the window that ends before frame `next`; held() is for that frame and those that
   /// follow, until the next call.
   void Name(const Tracks& tracks, FrameIndex next);
 
-  const HoldReport& report() const { return report_; }
+  HoldReport report() const;
 
  private:
   struct Place {
@@ -116,7 +117,10 @@ class OccupiedRegions {
   /// For each camera that holds something, CV_8UC1: verdicts in a row that found the pixel in a
   /// ghost.
   std::vector<cv::Mat> ghosts_;
-  HoldReport report_;
+  // Of the report, for each camera.
+  std::vector<std::int64_t> pictures_;
+  std::vector<std::int64_t> released_px_;
+  HoldReport report_;  ///< places only
 };
 
 }  // namespace vantage

@@ -15,6 +15,8 @@
 namespace vantage {
 namespace {
 
+constexpr std::int64_t kMaskQueue = 4;  // frames that wait to be measured
+
 Result<PersonSizeReport> Measure(const Scene& scene, const BackgroundOptions& background,
                                  int threads, const RunControl& control,
                                  const PersonSample& sample) {
@@ -26,17 +28,19 @@ Result<PersonSizeReport> Measure(const Scene& scene, const BackgroundOptions& ba
   const auto interval = std::max<FrameIndex>(1, std::lround(sample.interval_secs * rate));
   const double least_frames = sample.least_secs * rate;
   const double most_frames = sample.most_secs * rate;
-  std::vector<cv::Mat> masks;
-  for (FrameIndex frame = 0; static_cast<double>(frame) < most_frames; ++frame) {
-    if (control.Stopped()) return Cancelled();
-    VANTAGE_ASSIGN_OR_RETURN(const bool more, stream.Read(masks));
-    if (!more) break;
-    if (frame % interval != 0) continue;
-    VANTAGE_RETURN_IF_ERROR(meter.Add(masks));
-    if (static_cast<double>(frame) >= least_frames &&
-        meter.Report().TotalCounted() >= sample.enough) {
-      break;
+  MaskStages stages(stream, kMaskQueue);
+  const FlowStage measuring{.work = [&](std::int64_t frame, int) -> Result<bool> {
+    bool enough = false;
+    if (frame % interval == 0) {
+      VANTAGE_RETURN_IF_ERROR(meter.Add(stages.masks[frame]));
+      enough = static_cast<double>(frame) >= least_frames &&
+               meter.Report().TotalCounted() >= sample.enough;
     }
+    return !enough && static_cast<double>(frame + 1) < most_frames;
+  }};
+  const std::vector chain{stages.Reading(), stages.Background(kMaskQueue), measuring};
+  if (const auto flow = RunFlow(chain, threads, control); !flow) {
+    return tl::unexpected(flow.error());
   }
   return meter.Report();
 }

@@ -116,6 +116,8 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   stages["background"] = StageJson(maps.background_secs, maps.frames);
   stages["occupancy"] = StageJson(maps.occupancy_secs, maps.frames);
   stages["hold"] = StageJson(maps.hold_secs, maps.frames);
+  stages["idle"] = Json{{"seconds", maps.idle_secs}};
+  stages["maps"] = StageJson(maps.wall_secs, maps.frames);
   stages["linking"] = StageJson(result.report.linking.linking.seconds, maps.frames);
   stages["total"] = StageJson(result.report.total_secs, maps.frames);
   return json;

@@ -6,65 +6,15 @@
 #include <optional>
 #include <utility>
 
-#include "vantage/base/parallel.h"
 #include "vantage/base/stopwatch.h"
 #include "vantage/linking/access.h"
+#include "vantage/pipeline/flow.h"
 #include "vantage/pipeline/ground.h"
 #include "vantage/pipeline/mask_stream.h"
 #include "vantage/pipeline/recent_tracks.h"
 
 namespace vantage {
 namespace {
-
-/// Masks of consecutive frames, solved in parallel: frames are independent of each other. With a
-/// warm start they are not, and one thread solves them in order.
-class FrameBatch {
- public:
-  FrameBatch(const OccupancySolver& solver, bool warm_start, std::int64_t frames, int threads)
-      : solver_(solver),
-        warm_start_(warm_start),
-        masks_(static_cast<std::size_t>(frames)),
-        threads_(warm_start ? 1 : threads) {}
-
-  bool full() const { return used_ == masks_.size(); }
-  std::vector<cv::Mat>& Next() { return masks_[used_++]; }
-  void DropLast() { --used_; }
-
-  /// Solves the frames held, appends their maps, and empties the batch.
-  Status Solve(OccupancyMaps& maps, MapsReport& report) {
-    const std::size_t cells = solver_.cell_count();
-    const std::size_t start = maps.values.size();
-    maps.values.resize(start + used_ * cells);
-    std::vector<Result<SolveReport>> solved(used_);
-    ParallelFor(threads_, static_cast<std::int64_t>(used_), [&](std::int64_t i) {
-      const auto index = static_cast<std::size_t>(i);
-      const std::span<float> values(maps.values);
-      const std::size_t at = start + index * cells;
-      const std::span<const float> previous =
-          warm_start_ && at > 0 ? values.subspan(at - cells, cells) : std::span<float>();
-      solved[index] = solver_.Solve(masks_[index], values.subspan(at, cells), previous);
-    });
-    for (const Result<SolveReport>& result : solved) {
-      if (!result) return tl::unexpected(result.error());
-      iterations_ += result->iterations;
-      report.frames_not_converged += result->converged ? 0 : 1;
-      report.pictures_missing += result->cameras_left_out;
-      ++report.frames;
-    }
-    report.mean_iterations = static_cast<double>(iterations_) /
-                             static_cast<double>(std::max<std::int64_t>(report.frames, 1));
-    used_ = 0;
-    return {};
-  }
-
- private:
-  const OccupancySolver& solver_;
-  bool warm_start_;
-  std::vector<std::vector<cv::Mat>> masks_;
-  std::size_t used_ = 0;
-  std::int64_t iterations_ = 0;
-  int threads_;
-};
 
 /// The way back from the tracker to the masks: the tracks of the last moments name what the next
 /// frames hold.
@@ -94,32 +44,141 @@ class Feedback {
     return Feedback(std::move(occupied), std::move(recent));
   }
 
-  std::span<const cv::Mat> held() const { return occupied_.held(); }
-
-  /// The frame just read.
-  void Judge(const std::vector<cv::Mat>& masks, const MaskStream& stream) {
-    for (std::size_t camera = 0; camera < masks.size(); ++camera) {
-      const auto& subtractor = stream.subtractors()[camera];
-      if (!subtractor || masks[camera].empty()) continue;
-      occupied_.Judge(camera, masks[camera], subtractor->verdict());
-    }
+  /// Frames whose maps must be known before frame t is judged. In the time of a few frames nothing
+  /// fades.
+  static std::int64_t FramesNeeded(std::int64_t frame) {
+    return frame - frame % OccupiedRegions::kFramesBetween;
   }
 
-  /// The maps of the frames read since the last call.
-  Status Update(std::span<const float> maps) {
-    VANTAGE_RETURN_IF_ERROR(recent_.Add(maps));
+  const cv::Mat& held(int camera) const {
+    return occupied_.held()[static_cast<std::size_t>(camera)];
+  }
+
+  /// The mask that a camera has just made.
+  void Judge(int camera, const cv::Mat& mask, const MaskStream& stream) {
+    const auto index = static_cast<std::size_t>(camera);
+    const auto& subtractor = stream.subtractors()[index];
+    if (subtractor && !mask.empty()) occupied_.Judge(index, mask, subtractor->verdict());
+  }
+
+  /// The map of the frame that follows.
+  Status Add(std::span<const float> map) {
+    maps_.insert(maps_.end(), map.begin(), map.end());
+    if (++frames_ % OccupiedRegions::kFramesBetween != 0) return {};
+    VANTAGE_RETURN_IF_ERROR(recent_.Add(maps_));
+    maps_.clear();
     VANTAGE_ASSIGN_OR_RETURN(const Tracks tracks, recent_.Link());
     occupied_.Name(tracks, recent_.next_frame());
     return {};
   }
 
-  const HoldReport& report() const { return occupied_.report(); }
+  HoldReport report() const { return occupied_.report(); }
 
  private:
   Feedback(OccupiedRegions occupied, RecentTracks recent)
       : occupied_(std::move(occupied)), recent_(std::move(recent)) {}
   OccupiedRegions occupied_;
   RecentTracks recent_;
+  std::vector<float> maps_;  // of the frames since tracks were last looked for
+  std::int64_t frames_ = 0;
+};
+
+/// Frames whose masks wait to be solved, and whose maps wait to be collected.
+constexpr std::int64_t kMaskQueue = 8;
+constexpr std::int64_t kMapQueue = 8;
+
+/// The chain from pictures to maps: reading, background, occupancy, collecting. What a stage
+/// touches belongs to it alone, or waits in a queue, or is the way back, whose parts are touched by
+/// a camera's background and by collecting in turns.
+class MapChain {
+ public:
+  MapChain(const OccupancySolver& solver, bool warm_start, MaskStream& stream,
+           std::optional<Feedback>& feedback, const MaskSink& mask_sink, MapsResult& result)
+      : solver_(solver),
+        warm_start_(warm_start),
+        stream_(stream),
+        stages_(stream, kMaskQueue + kMapQueue),
+        solved_(kMapQueue + 1),
+        feedback_(feedback),
+        mask_sink_(mask_sink),
+        result_(result) {}
+
+  Status Run(int threads, const RunControl& control) {
+    FlowStage background =
+        feedback_ ? stages_.Background(
+                        kMaskQueue,
+                        [this](int camera) -> const cv::Mat& { return feedback_->held(camera); },
+                        [this](int camera, const cv::Mat& mask) {
+                          feedback_->Judge(camera, mask, stream_);
+                        })
+                  : stages_.Background(kMaskQueue);
+    if (feedback_) background.returned = Feedback::FramesNeeded;
+    // With a warm start frames are not independent of each other.
+    const FlowStage occupancy{.in_order = warm_start_,
+                              .queue = kMapQueue,
+                              .work = [this](std::int64_t frame, int) { return Solve(frame); }};
+    const FlowStage collecting{.work = [&](std::int64_t frame, int) -> Result<bool> {
+      VANTAGE_RETURN_IF_ERROR(Collect(frame));
+      control.Report(frame + 1, stream_.frame_count().value_or(0));
+      return true;
+    }};
+    VANTAGE_ASSIGN_OR_RETURN(
+        const FlowReport flow,
+        RunFlow(std::vector{stages_.Reading(), background, occupancy, collecting}, threads,
+                control));
+    MapsReport& report = result_.report;
+    report.frames = flow.frames;
+    report.mean_iterations = static_cast<double>(iterations_) /
+                             static_cast<double>(std::max<std::int64_t>(report.frames, 1));
+    report.read_secs = flow.stage_secs[0];
+    report.background_secs = flow.stage_secs[1];
+    report.occupancy_secs = flow.stage_secs[2];
+    report.hold_secs = flow.stage_secs[3];
+    report.idle_secs = flow.idle_secs;
+    report.wall_secs = flow.wall_secs;
+    return {};
+  }
+
+ private:
+  struct Solved {
+    std::vector<float> map;
+    SolveReport report;
+  };
+
+  Result<bool> Solve(std::int64_t frame) {
+    Solved& solved = solved_[frame];
+    solved.map.resize(solver_.cell_count());
+    const bool follows = warm_start_ && frame > 0;
+    VANTAGE_ASSIGN_OR_RETURN(solved.report,
+                             solver_.Solve(stages_.masks[frame], solved.map,
+                                           follows ? std::span<const float>(solved_[frame - 1].map)
+                                                   : std::span<const float>()));
+    return true;
+  }
+
+  Status Collect(std::int64_t frame) {
+    const Solved& solved = solved_[frame];
+    MapsReport& report = result_.report;
+    if (mask_sink_) {
+      VANTAGE_RETURN_IF_ERROR(mask_sink_(result_.maps.first_frame + frame, stages_.masks[frame]));
+    }
+    std::vector<float>& values = result_.maps.values;
+    values.insert(values.end(), solved.map.begin(), solved.map.end());
+    iterations_ += solved.report.iterations;
+    report.frames_not_converged += solved.report.converged ? 0 : 1;
+    report.pictures_missing += solved.report.cameras_left_out;
+    return feedback_ ? feedback_->Add(solved.map) : Status();
+  }
+
+  const OccupancySolver& solver_;
+  bool warm_start_;
+  MaskStream& stream_;
+  MaskStages stages_;
+  Ring<Solved> solved_;  // one more than wait: a warm start reads the one before
+  std::optional<Feedback>& feedback_;
+  const MaskSink& mask_sink_;
+  MapsResult& result_;
+  std::int64_t iterations_ = 0;
 };
 
 }  // namespace
@@ -158,41 +217,12 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   VANTAGE_ASSIGN_OR_RETURN(std::optional<Feedback> feedback,
                            Feedback::Create(scene, report.person.used, options, stream, maps));
 
-  const std::int64_t total = stream.frame_count().value_or(0);
-  // What a frame holds must not depend on the number of threads.
-  FrameBatch batch(solver, options.occupancy.warm_start,
-                   feedback ? OccupiedRegions::kFramesBetween : 4 * std::max(threads, 1), threads);
-  std::int64_t frames_read = 0;
-  for (bool more = true; more;) {
-    while (more && !batch.full()) {
-      if (control.Stopped()) return Cancelled();
-      std::vector<cv::Mat>& masks = batch.Next();
-      VANTAGE_ASSIGN_OR_RETURN(
-          more, stream.Read(masks, feedback ? feedback->held() : std::span<const cv::Mat>()));
-      if (!more) {
-        batch.DropLast();
-        break;
-      }
-      if (feedback) feedback->Judge(masks, stream);
-      if (mask_sink) VANTAGE_RETURN_IF_ERROR(mask_sink(scene.first_frame + frames_read, masks));
-      ++frames_read;
-    }
-    const std::size_t known = maps.values.size();
-    Stopwatch stopwatch;
-    VANTAGE_RETURN_IF_ERROR(batch.Solve(maps, report));
-    stopwatch.LapInto(report.occupancy_secs);
-    if (feedback && more) {
-      VANTAGE_RETURN_IF_ERROR(feedback->Update(std::span(maps.values).subspan(known)));
-      stopwatch.LapInto(report.hold_secs);
-    }
-    control.Report(report.frames, total);
-  }
+  MapChain chain(solver, options.occupancy.warm_start, stream, feedback, mask_sink, result);
+  VANTAGE_RETURN_IF_ERROR(chain.Run(threads, control));
   if (report.frames == 0) {
     return Fail("{}: no frame to process: the cameras have no picture at frame {} or after it",
                 scene.file.string(), scene.first_frame);
   }
-  report.read_secs = stream.read_secs();
-  report.background_secs = stream.background_secs();
   for (const auto& subtractor : stream.subtractors()) {
     report.background.push_back(subtractor ? subtractor->report() : BackgroundReport{});
   }

@@ -46,11 +46,15 @@ struct MapsReport {
   std::int64_t area_cells = 0;
   std::int64_t unseen_area_cells = 0;
   ExtensionReport extension;
-  /// Wall-clock.
+  /// Time spent in the stages, which overlap, all threads together; collecting the maps and finding
+  /// what to hold are one stage.
   double read_secs = 0;
   double background_secs = 0;
   double occupancy_secs = 0;
   double hold_secs = 0;
+  /// Time that threads were without work, and wall-clock time of the whole chain.
+  double idle_secs = 0;
+  double wall_secs = 0;
   /// One entry per camera; cameras that deliver masks have an empty one.
   std::vector<BackgroundReport> background;
   HoldReport hold;

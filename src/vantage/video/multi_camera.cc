@@ -33,10 +33,24 @@ Result<MultiCameraReader> MultiCameraReader::Create(std::vector<SyncedSource> so
   }
   MultiCameraReader reader;
   reader.frames_read_.resize(sources.size());
+  reader.next_frames_.resize(sources.size(), first_frame);
   reader.sources_ = std::move(sources);
   reader.first_frame_ = first_frame;
   reader.next_frame_ = first_frame;
   return reader;
+}
+
+Result<bool> MultiCameraReader::Advance(std::size_t camera, cv::Mat& frame) {
+  const SyncedSource& synced = sources_[camera];
+  if (next_frames_[camera]++ + synced.offset_frames >= 0) return synced.source->Read(frame);
+  frame.release();
+  return true;
+}
+
+Result<bool> MultiCameraReader::ReadCamera(std::size_t camera, cv::Mat& frame) {
+  VANTAGE_ASSIGN_OR_RETURN(const bool more, Advance(camera, frame));
+  if (more && !frame.empty()) ++frames_read_[camera];
+  return more;
 }
 
 Result<bool> MultiCameraReader::Read(std::vector<cv::Mat>& frames, int threads) {
@@ -45,11 +59,7 @@ Result<bool> MultiCameraReader::Read(std::vector<cv::Mat>& frames, int threads) 
   std::vector<Result<bool>> more(sources_.size(), true);
   ParallelFor(threads, static_cast<std::int64_t>(sources_.size()), [&](std::int64_t index) {
     const auto camera = static_cast<std::size_t>(index);
-    if (next_frame_ + sources_[camera].offset_frames < 0) {
-      frames[camera].release();
-    } else {
-      more[camera] = sources_[camera].source->Read(frames[camera]);
-    }
+    more[camera] = Advance(camera, frames[camera]);
   });
   for (const Result<bool>& result : more) VANTAGE_RETURN_IF_ERROR(result);
   ended_ =

@@ -40,6 +40,10 @@ class MultiCameraReader {
   /// the end of the shortest source. Errors are those of the sources, the first in their order.
   Result<bool> Read(std::vector<cv::Mat>& frames, int threads);
 
+  /// The same for one camera alone: different cameras may be read from different threads, each at
+  /// its own pace. False at the end of its source. A reader is used either in step or like this.
+  Result<bool> ReadCamera(std::size_t camera, cv::Mat& frame);
+
   /// Frames from the start to the end of the shortest source; none when no source knows its count.
   std::optional<std::int64_t> frame_count() const;
 
@@ -52,8 +56,10 @@ class MultiCameraReader {
 
  private:
   MultiCameraReader() = default;
+  Result<bool> Advance(std::size_t camera, cv::Mat& frame);
   std::vector<SyncedSource> sources_;
   std::vector<std::int64_t> frames_read_;
+  std::vector<std::int64_t> next_frames_;  // number of the scene's frame that a camera gives next
   std::int64_t first_frame_ = 0;
   std::int64_t next_frame_ = 0;
   bool ended_ = false;

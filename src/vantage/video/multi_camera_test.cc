@@ -104,6 +104,23 @@ TEST(MultiCameraReader, ReportsFramesOfEachCamera) {
   EXPECT_EQ(report[1].frames_read, 2);
 }
 
+TEST(MultiCameraReader, CamerasMayBeReadAtTheirOwnPace) {
+  auto reader = MultiCameraReader::Create(Cameras(Camera("a", 9, 2), Camera("b", 9, -4)), 3);
+  ASSERT_TRUE(reader) << MessageOf(reader);
+  cv::Mat frame;
+  for (const int number : {5, 6, 7, 8}) {
+    ASSERT_TRUE(reader->ReadCamera(0, frame).value());
+    EXPECT_EQ(frame.at<unsigned char>(0, 0), number);
+  }
+  EXPECT_FALSE(reader->ReadCamera(0, frame).value());
+  ASSERT_TRUE(reader->ReadCamera(1, frame).value());
+  EXPECT_TRUE(frame.empty()) << "it starts later";
+  ASSERT_TRUE(reader->ReadCamera(1, frame).value());
+  EXPECT_EQ(frame.at<unsigned char>(0, 0), 0);
+  EXPECT_EQ(reader->report()[0].frames_read, 4);
+  EXPECT_EQ(reader->report()[1].frames_read, 1);
+}
+
 TEST(MultiCameraReader, SizesMayDiffer) {
   std::vector<SyncedSource> sources;
   sources.push_back({std::make_unique<CountingSource>("a", ImageSize{4, 3}, 2), 0});
