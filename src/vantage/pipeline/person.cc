@@ -33,8 +33,9 @@ Result<PersonSizeReport> Measure(const Scene& scene, const BackgroundOptions& ba
     bool enough = false;
     if (frame % interval == 0) {
       VANTAGE_RETURN_IF_ERROR(meter.Add(stages.masks[frame]));
-      enough = static_cast<double>(frame) >= least_frames &&
-               meter.Report().TotalCounted() >= sample.enough;
+      const std::int64_t counted = meter.Report().TotalCounted();
+      enough = counted >= sample.plenty ||
+               (counted >= sample.enough && static_cast<double>(frame) >= least_frames);
     }
     return !enough && static_cast<double>(frame + 1) < most_frames;
   }};

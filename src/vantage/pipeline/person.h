@@ -35,8 +35,10 @@ struct PersonSample {
   double least_secs = 15;
   /// then until this many figures count,
   std::int64_t enough = 200;
-  /// or until this moment.
+  /// or until this moment. Many cameras see more in less time: not for longer than it takes until
+  /// this many count.
   double most_secs = 60;
+  std::int64_t plenty = 600;
 };
 
 /// The lengths that the scene leaves open, measured in a first pass over the beginning of the

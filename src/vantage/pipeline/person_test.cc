@@ -106,6 +106,10 @@ TEST_F(OneCamera, NoMoreIsReadThanNeeded) {
       ResolvePerson(Load(), {}, 1, {},
                     {.interval_secs = 0.25, .least_secs = 10, .enough = 1000, .most_secs = 20});
   EXPECT_EQ(longest.value().measured->frames, 80);
+  const auto plenty = ResolvePerson(
+      Load(), {}, 1, {},
+      {.interval_secs = 0.25, .least_secs = 15, .enough = 50, .most_secs = 60, .plenty = 55});
+  EXPECT_EQ(plenty.value().measured->frames, 55);
 }
 
 TEST_F(OneCamera, GivenLengthsArePreferred) {
