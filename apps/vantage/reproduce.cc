@@ -2,74 +2,66 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "command.h"
-#include "vantage/base/file.h"
-#include "vantage/experiments/ghost_experiment.h"
-#include "vantage/experiments/ghost_report.h"
+#include "vantage/experiments/experiment.h"
 
 namespace vantage::app {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Flags of every experiment.
 struct Flags {
-  fs::path data, output;
-  bool force = false;
+  std::vector<std::string> names;
+  Study study;
+  FrameIndex frames = 0;  ///< 0: all
 };
 
-std::string F1Text(const GhostRun* run) {
-  if (run == nullptr || std::isnan(run->measures.f1)) return fmt::format("{:>9}", "-");
-  return fmt::format("{:>9.4f}", run->measures.f1);
+std::string ListOfExperiments() {
+  std::string list = "Experiments:\n";
+  for (const Experiment& one : Experiments()) {
+    std::string names = one.name;
+    for (const std::string& other : one.also) names += ", " + other;
+    list += fmt::format("  {:<28} {}\n", names, one.summary);
+  }
+  return list + fmt::format("  {:<28} {}\n", "all", "All of them, on one page");
 }
 
-void PrintGhosts(const GhostResults& results, const Flags& flags, const CommonFlags& common) {
+void PrintStudy(const StudyReport& report, const CommonFlags& common) {
   if (common.json) {
     fmt::print("{}\n",
-               GhostJson(results).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+               JsonOf(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return;
   }
-  const std::vector<std::string> variants = {"none", "fep-plain", DefaultVariantName(), "mog2",
-                                             "knn"};
-  const MixtureOptions defaults;
-  std::string head;
-  for (const std::string& variant : variants) head += fmt::format("{:>9}", variant);
-  std::vector<ReportRow> rows = {{"F1 at defaults", head}};
-  for (const GhostCaseResult& in : results.cases) {
-    std::string line;
-    for (const std::string& variant : variants) {
-      line += F1Text(results.Find(in, variant, defaults.color, defaults.rate, defaults.alpha));
-    }
-    rows.push_back({in.used.name, line});
+  std::vector<ReportRow> rows = {
+      {"cells", fmt::format("{} computed, {} kept", report.cells_computed, report.cells_kept)}};
+  for (const Finding& finding : report.findings) {
+    rows.push_back({finding.experiment, fmt::format("{}: {} ({})", finding.thesis,
+                                                    NameOf(finding.verdict), finding.here)});
   }
-  for (const std::string& skipped : results.skipped) rows.push_back({"not run", skipped});
-  rows.push_back({"page", (flags.output / "ghosts.html").string()});
+  for (const std::string& skipped : report.skipped) rows.push_back({"not run", skipped});
+  for (const std::string& note : report.notes) rows.push_back({"note", note});
+  rows.push_back({"figures", report.csv.string()});
+  rows.push_back({"page", report.page.string()});
   PrintTable(rows);
 }
 
-Status ReproduceGhosts(const Flags& flags, const CommonFlags& common) {
-  for (const GhostCase& one : StandardGhostCases()) {
-    if (IsInside(flags.data / one.sequence, flags.output)) {
-      return Fail("{}: the output would replace the data; name another folder",
-                  flags.output.string());
-    }
-  }
-  VANTAGE_ASSIGN_OR_RETURN(StagedDirectory folder,
-                           StagedDirectory::Create(flags.output, flags.force));
+Status Run(const Flags& flags, const CommonFlags& common) {
+  VANTAGE_ASSIGN_OR_RETURN(const std::vector<Experiment> experiments,
+                           ChooseExperiments(flags.names));
+  Study study = flags.study;
+  study.threads = common.threads;
+  if (flags.frames > 0) study.frames = flags.frames;
+  study.record = [](const simulation::RecordOptions&, const std::filesystem::path&, int,
+                    const RunControl&) -> Result<simulation::RecordReport> {
+    return Fail("this build has no simulator");
+  };
   VANTAGE_ASSIGN_OR_RETURN(
-      const GhostResults results,
-      RunGhostExperiment(flags.data, StandardGhostCases(), StandardGhostVariants(), common.threads,
-                         MakeRunControl(common, "ghosts", "frames")));
-  VANTAGE_RETURN_IF_ERROR(WriteGhostReport(results, folder.temporary()));
-  VANTAGE_RETURN_IF_ERROR(folder.Commit());
-  PrintGhosts(results, flags, common);
+      const StudyReport report,
+      RunStudy(experiments, study, MakeRunControl(common, "reproduce", "cells")));
+  PrintStudy(report, common);
   return {};
 }
 
@@ -80,26 +72,28 @@ Command ReproduceCommand() {
           .summary = "The thesis's experiments on the data at hand, as a page with plots and CSV",
           .define = [](CLI::App& app) -> Action {
             const auto flags = std::make_shared<Flags>();
-            app.require_subcommand(1);
-            CLI::App* ghosts = app.add_subcommand(
-                "ghosts",
-                "Ghost detection (figures 8 to 11): every criterion in both colour spaces at both "
-                "learning rates, beside OpenCV's MOG2 and KNN");
-            ghosts->fallthrough();  // the flags that every command has
-            ghosts
-                ->add_option("--data", flags->data,
-                             "Folder that holds the sequences cdnet/office, cdnet/traffic, "
-                             "sbi/CaVignal and sbi/IBMtest2; those that are absent are left out")
+            app.footer(ListOfExperiments());
+            app.add_option("experiment", flags->names, "What to run, one or more of those below")
+                ->type_name("NAME")
+                ->required();
+            app.add_option("-o,--output", flags->study.output,
+                           "Working folder: report.html, figures.csv, and what was computed, which "
+                           "the next run there keeps")
                 ->type_name("DIR")
                 ->required();
-            ghosts
-                ->add_option("-o,--output", flags->output,
-                             "Folder for ghosts.html, ghosts.csv, ghosts_frames.csv and "
-                             "ghosts.json")
-                ->type_name("DIR")
-                ->required();
-            ghosts->add_flag("--force", flags->force, "Replace what the folder holds");
-            return [flags](const CommonFlags& common) { return ReproduceGhosts(*flags, common); };
+            app.add_option(
+                   "--data", flags->study.data,
+                   "Folder of the research data: pets2009/, cdnet/, sbi/; what is absent is "
+                   "left out or simulated, and the page says so")
+                ->type_name("DIR");
+            app.add_flag("--quick", flags->study.quick,
+                         "A small version in minutes: few, short and small recordings");
+            app.add_option("--frames", flags->frames,
+                           "At most so many frames of each recording; 0: all")
+                ->check(CLI::Range(0, 1'000'000))
+                ->capture_default_str();
+            app.add_flag("--force", flags->study.force, "Compute all anew, keeping nothing");
+            return [flags](const CommonFlags& common) { return Run(*flags, common); };
           }};
 }
 

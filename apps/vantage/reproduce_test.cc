@@ -16,6 +16,7 @@ namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::ElementsAre;
 using testing::Entries;
 using testing::ExpectOneLine;
 using testing::GhostSequence;
@@ -37,85 +38,99 @@ struct DrawnData {
   }
 };
 
-const std::vector<std::string> kFiles = {"ghosts.csv", "ghosts.html", "ghosts.json",
-                                         "ghosts_frames.csv"};
-
-TEST(ReproduceGhosts, WritesThePageFromWhatIsThere) {
+TEST(Reproduce, WritesThePageFromWhatIsThere) {
   const DrawnData drawn;
   const Outcome outcome = drawn.Run();
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("CaVignal: "));
-  EXPECT_THAT(outcome.out, HasSubstr("is not there"));
-  EXPECT_THAT(outcome.out, HasSubstr("ghosts.html"));
-  EXPECT_EQ(Entries(drawn.out()), kFiles);
-  const std::string csv = ReadTextFile(drawn.out() / "ghosts.csv").value();
+  EXPECT_THAT(outcome.out, HasSubstr("sbi/CaVignal is not in the data folder"));
+  EXPECT_THAT(outcome.out, HasSubstr("report.html"));
+  EXPECT_THAT(Entries(drawn.out()),
+              ElementsAre("figures.csv", "ghosts.csv", "ghosts.html", "ghosts.json", "ghosts.json",
+                          "ghosts_frames.csv", "report.html", "reproduce.json"));
+  const std::string csv = ReadTextFile(drawn.out() / "ghosts/ghosts.csv").value();
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 61);
-  EXPECT_THAT(ReadTextFile(drawn.out() / "ghosts.html").value(), HasSubstr("IBMtest2"));
+  EXPECT_THAT(ReadTextFile(drawn.out() / "report.html").value(), HasSubstr("IBMtest2"));
+  EXPECT_THAT(ReadTextFile(drawn.out() / "figures.csv").value(), HasSubstr("\nghosts,none,f1,0."));
 }
 
-TEST(ReproduceGhosts, PrintsJson) {
+TEST(Reproduce, ASecondRunKeepsWhatIsThere) {
   const DrawnData drawn;
-  const Outcome outcome = drawn.Run("--json --threads 1");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
-  EXPECT_EQ(json["sequences"].size(), 1u);
-  EXPECT_EQ(json["skipped"].size(), 4u);
+  ASSERT_EQ(drawn.Run().status, 0);
+  const std::string page = ReadTextFile(drawn.out() / "report.html").value();
+  const Outcome again = drawn.Run();
+  EXPECT_THAT(again.out, HasSubstr("0 computed, 1 kept"));
+  EXPECT_EQ(ReadTextFile(drawn.out() / "report.html").value(), page);
+  fs::resize_file(drawn.out() / "cells/ghosts.json", 60);
+  const Outcome damaged = drawn.Run("--json --threads 1");
+  ASSERT_EQ(damaged.status, 0) << damaged.err;
+  const auto json = nlohmann::json::parse(damaged.out);
+  EXPECT_EQ(json["cells_computed"], 1);
+  EXPECT_EQ(json["skipped"].size(), 3u);
+  EXPECT_THAT(json["notes"][0].get<std::string>(), HasSubstr("ghosts.json: is damaged"));
+  EXPECT_EQ(ReadTextFile(drawn.out() / "report.html").value(), page);
 }
 
-TEST(ReproduceGhosts, WrongUsage) {
+TEST(Reproduce, WrongUsage) {
   const DrawnData drawn;
-  ExpectOneLine(RunProgram("reproduce"), 2, "subcommand");
-  ExpectOneLine(RunProgram("reproduce table9 -o out"), 2, "");
-  ExpectOneLine(RunProgram("reproduce ghosts -o out"), 2, "--data is required");
-  ExpectOneLine(RunProgram(fmt::format("reproduce ghosts --data '{}'", drawn.data().string())), 2,
-                "--output is required");
-  EXPECT_EQ(RunProgram("reproduce ghosts --help").status, 0);
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  ExpectOneLine(RunProgram("reproduce"), 2, "experiment is required");
+  ExpectOneLine(RunProgram("reproduce ghosts"), 2, "--output is required");
+  ExpectOneLine(RunProgram("reproduce ghosts --frames -1 -o " + out), 2, "--frames");
+  ExpectOneLine(RunProgram("reproduce table9 --quiet -o " + out), 1,
+                "table9: no such experiment; there are all, ");
+  ExpectOneLine(RunProgram("reproduce ghosts --quiet -o " + out), 1, "nothing can be run: ghosts");
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  const Outcome help = RunProgram("reproduce --help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.out, HasSubstr("  ghosts "));
+  EXPECT_THAT(help.out, HasSubstr("  all "));
 }
 
-TEST(ReproduceGhosts, MissingData) {
+TEST(Reproduce, MissingData) {
   const TemporaryFolder folder;
   const auto run = [&](const std::string& data) {
     return RunProgram(fmt::format("reproduce ghosts --data '{0}/{1}' -o '{0}/out' --quiet",
                                   folder.path().string(), data));
   };
   ExpectOneLine(run("none"), 1, "none: no such folder");
-  ExpectOneLine(run(""), 1, "holds none of the sequences cdnet/office");
   std::ofstream(folder / "file").flush();
   ExpectOneLine(run("file"), 1, "file: no such folder");
+  fs::create_directory(folder / "empty");
+  ExpectOneLine(run("empty"), 1, "cdnet/office is not in the data folder");
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(ReproduceGhosts, AnOutputThatHoldsSomething) {
+TEST(Reproduce, AnOutputThatHoldsSomethingElse) {
   const DrawnData drawn;
   fs::create_directories(drawn.out());
   std::ofstream(drawn.out() / "mine.txt") << "mine";
-  ExpectOneLine(drawn.Run(), 1, "already holds files");
-  EXPECT_EQ(Entries(drawn.out()), std::vector<std::string>{"mine.txt"});
-  EXPECT_EQ(drawn.Run("--force").status, 0);
-  EXPECT_EQ(Entries(drawn.out()), kFiles);
+  for (const char* more : {"", "--force"}) {
+    ExpectOneLine(drawn.Run(more), 1, "already holds files");
+    EXPECT_EQ(Entries(drawn.out()), std::vector<std::string>{"mine.txt"});
+  }
   ExpectOneLine(RunProgram(fmt::format("reproduce ghosts --data '{}' -o /dev/null/out --quiet",
                                        drawn.data().string())),
                 1, "/dev/null");
 }
 
-TEST(ReproduceGhosts, TheOutputMayNotReplaceTheData) {
+TEST(Reproduce, TheOutputMayNotReplaceTheData) {
   const DrawnData drawn;
   const std::size_t files = Entries(drawn.data()).size();
-  for (const char* inside : {"", "/", "/sbi", "/sbi/IBMtest2"}) {
+  for (const char* inside : {"", "/", "/sbi", "/sbi/IBMtest2", "/new", "/.."}) {
     const std::string out = drawn.data().string() + inside;
     ExpectOneLine(RunProgram(fmt::format("reproduce ghosts --data '{}' -o '{}' --quiet --force",
                                          drawn.data().string(), out)),
-                  1, "would replace the data");
+                  1, "must not lie in each other");
   }
   EXPECT_EQ(Entries(drawn.data()).size(), files);
 }
 
-TEST(ReproduceGhosts, ABrokenSequenceLeavesNothing) {
+TEST(Reproduce, ABrokenSequenceLeavesNoReport) {
   const DrawnData drawn;
   fs::resize_file(drawn.sequence() / "input/in000060.png", 60);
   ExpectOneLine(drawn.Run(), 1, "in000060.png");
-  EXPECT_FALSE(fs::exists(drawn.out()));
-  EXPECT_EQ(Entries(drawn.folder.path()).size(), Entries(drawn.data()).size());
+  EXPECT_EQ(Entries(drawn.out()), std::vector<std::string>{"reproduce.json"});
 }
 
 }  // namespace

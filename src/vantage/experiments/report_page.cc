@@ -20,6 +20,8 @@ caption { caption-side: top; text-align: left; padding-bottom: .3em; color: #444
 th, td { padding: .15em .6em; border-bottom: 1px solid #ddd; text-align: right; }
 th:first-child, td:first-child, table.words th, table.words td { text-align: left; }
 thead th { border-bottom: 1px solid #555; vertical-align: bottom; }
+table.pictures td { padding: .15em; border: 0; vertical-align: middle; }
+table.pictures img { display: block; max-width: 100%; }
 figure { margin: 1em 0; } figcaption { color: #444; }
 .charts { display: flex; flex-wrap: wrap; gap: .6em; } .charts svg { flex: 1 1 360px; max-width: 620px; }
 @media print { body { font-size: 9pt; max-width: none; margin: 0; } h2, h3 { break-after: avoid; }
@@ -115,6 +117,36 @@ void ReportPage::Figure(const std::vector<std::string>& charts, std::string_view
   body_ += fmt::format("<figure>\n<div class=\"charts\">\n{}</div>\n<figcaption>{}</figcaption>\n",
                        fmt::join(charts, ""), EscapeMarkup(caption));
   body_ += "</figure>\n";
+}
+
+void ReportPage::Pictures(const PictureGrid& grid) {
+  body_ += "<figure>\n<table class=\"pictures\">\n";
+  if (!grid.columns.empty()) {
+    body_ += "<thead><tr><th></th>";
+    for (const std::string& column : grid.columns) {
+      body_ += fmt::format("<th>{}</th>", EscapeMarkup(column));
+    }
+    body_ += "</tr></thead>\n";
+  }
+  body_ += "<tbody>\n";
+  for (const PictureGrid::Row& row : grid.rows) {
+    body_ += fmt::format("<tr><td>{}</td>", EscapeMarkup(row.name));
+    for (std::size_t i = 0; i < row.pictures.size(); ++i) {
+      const std::string name =
+          i < grid.columns.size() ? row.name + " " + grid.columns[i] : row.name;
+      body_ += row.pictures[i].empty()
+                   ? "<td></td>"
+                   : fmt::format("<td><img src=\"{}\" alt=\"{}\"/></td>",
+                                 EscapeMarkup(row.pictures[i]), EscapeMarkup(name));
+    }
+    body_ += "</tr>\n";
+  }
+  body_ += fmt::format("</tbody>\n</table>\n<figcaption>{}</figcaption>\n</figure>\n",
+                       EscapeMarkup(grid.caption));
+}
+
+void ReportPage::Append(const ReportPage& section) {
+  body_ += fmt::format("<h2>{}</h2>\n{}", section.title_, section.body_);
 }
 
 std::string ReportPage::Html() const {

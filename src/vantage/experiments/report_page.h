@@ -22,6 +22,17 @@ struct PageTable {
   bool words = false;
 };
 
+/// Pictures in rows under headings.
+struct PictureGrid {
+  std::vector<std::string> columns = {};  ///< one heading a column; empty: no headings
+  struct Row {
+    std::string name;
+    std::vector<std::string> pictures;  ///< data URIs (picture_uri.h); empty: none there
+  };
+  std::vector<Row> rows = {};
+  std::string caption = {};
+};
+
 /// A page that stands alone: one file without scripts or anything from outside, for screens and for
 /// print. All text is escaped here; charts come as the SVG of chart.h. The markup is XML too.
 class ReportPage {
@@ -35,6 +46,10 @@ class ReportPage {
   void Table(const PageTable& table);
   /// Charts beside each other as far as they fit, under one caption.
   void Figure(const std::vector<std::string>& charts, std::string_view caption);
+
+  void Pictures(const PictureGrid& grid);
+  /// The content of another page; its title becomes a heading.
+  void Append(const ReportPage& section);
 
   std::string Html() const;
 

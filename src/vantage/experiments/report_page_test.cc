@@ -90,5 +90,28 @@ TEST(ReportPage, StandsAlone) {
   }
 }
 
+TEST(ReportPage, PicturesAndSections) {
+  ReportPage section(kHostile);
+  section.Pictures({.columns = {"one", kHostile},
+                    .rows = {{.name = kHostile, .pictures = {"data:image/png;base64,AA==", ""}}},
+                    .caption = kHostile});
+  ReportPage page("whole");
+  page.Append(section);
+  const pugi::xml_document document = Parsed(page);
+  const pugi::xml_node body = document.child("html").child("body");
+  EXPECT_STREQ(body.child("h2").text().get(), "<script>alert(\"x\")</script> & 'y' \uFFFD\uFFFD");
+  const pugi::xml_node table = body.child("figure").child("table");
+  EXPECT_EQ(std::string(table.child("tbody")
+                            .child("tr")
+                            .find_node([](const pugi::xml_node& node) {
+                              return std::string(node.name()) == "img";
+                            })
+                            .attribute("src")
+                            .value()),
+            "data:image/png;base64,AA==");
+  const auto cells = table.child("tbody").child("tr").children("td");
+  EXPECT_EQ(std::distance(cells.begin(), cells.end()), 3);
+}
+
 }  // namespace
 }  // namespace vantage
