@@ -150,10 +150,11 @@ std::string ToSvg(const LineChart& chart) {
     }
   }
   if (first > last) first = last = 0;  // no point at all
-  const Axis x{.low = first, .high = std::max(last, first + 1), .from = kLeft, .to = kRight};
+  const Axis x{
+      .low = first, .high = std::max(last, first + chart.x_step), .from = kLeft, .to = kRight};
   const Axis y{.low = 0, .high = highest > 0 ? highest : 1, .from = kBottom, .to = kTop};
   std::string svg = Open(chart.title) + YAxis(y);
-  const double step = std::max(1.0, TickStep(x.high - x.low));
+  const double step = std::max(chart.x_step, TickStep(x.high - x.low));
   const double first_tick = std::ceil(x.low / step) * step;
   for (int i = 0; first_tick + i * step <= x.high; ++i) {
     const double value = first_tick + i * step;

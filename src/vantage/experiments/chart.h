@@ -35,6 +35,7 @@ struct LineChart {
   std::vector<LineSeries> series = {};
   /// Vertical lines across the chart with what they mark.
   std::vector<std::pair<double, std::string>> marks = {};
+  double x_step = 1;  ///< the least distance of two figures on the x axis, > 0
 };
 std::string ToSvg(const LineChart& chart);
 
