@@ -54,10 +54,7 @@ Status Run(const Flags& flags, const CommonFlags& common) {
   Study study = flags.study;
   study.threads = common.threads;
   if (flags.frames > 0) study.frames = flags.frames;
-  study.record = [](const simulation::RecordOptions&, const std::filesystem::path&, int,
-                    const RunControl&) -> Result<simulation::RecordReport> {
-    return Fail("this build has no simulator");
-  };
+  study.record = &simulation::RecordScene;
   VANTAGE_ASSIGN_OR_RETURN(
       const StudyReport report,
       RunStudy(experiments, study, MakeRunControl(common, "reproduce", "cells")));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 
 #include "test_program.h"
 #include "vantage/base/file.h"
@@ -68,6 +69,26 @@ TEST(Reproduce, ASecondRunKeepsWhatIsThere) {
   EXPECT_EQ(json["skipped"].size(), 3u);
   EXPECT_THAT(json["notes"][0].get<std::string>(), HasSubstr("ghosts.json: is damaged"));
   EXPECT_EQ(ReadTextFile(drawn.out() / "report.html").value(), page);
+}
+
+TEST(Reproduce, ASimulatedTableInItsSmallestForm) {
+  const TemporaryFolder folder;
+  const std::string command =
+      fmt::format("reproduce table3 --quick --frames 10 -o '{}/out' --quiet --json --threads 2",
+                  folder.path().string());
+  const Outcome outcome = RunProgram(command);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["cells_computed"], 10);  // recording, masks, 8 rows
+  EXPECT_EQ(json["figures"].size(), 8u * 8 * 2);
+  EXPECT_EQ(json["figures"][0]["simulated"], true);
+  EXPECT_EQ(json["figures"][0]["thesis"], 0.5938);
+  EXPECT_TRUE(fs::exists(folder.path() / "out/data/floorball-quick/scene.toml"));
+  pugi::xml_document page;
+  EXPECT_TRUE(page.load_string(ReadTextFile(folder.path() / "out/report.html").value().c_str()));
+  const auto again = nlohmann::json::parse(RunProgram(command).out);
+  EXPECT_EQ(again["cells_computed"], 0);
+  EXPECT_EQ(again["figures"], json["figures"]);
 }
 
 TEST(Reproduce, WrongUsage) {

@@ -55,11 +55,13 @@ Result<Json> RunGhosts(const Study& study, const CellRun& cell) {
   return json;
 }
 
-Status ReportGhosts(const Json& result, ReportPage& page, ExperimentReport& report) {
-  page.Paragraph(
+Status ReportGhosts(const Json& result, const std::string& folder, ReportPage& page,
+                    ExperimentReport& report) {
+  page.Paragraph(fmt::format(
       "F1 of the masks at the default colour, rate and alpha, on real sequences of CDnet and SBI. "
-      "Every criterion in both colour spaces at both rates, with charts, is in ghosts/ghosts.html "
-      "beside this page.");
+      "Every criterion in both colour spaces at both rates, with charts, is in {}/ghosts.html "
+      "beside this page.",
+      folder));
   PageTable table{.header = {"sequence"}};
   const std::vector<std::string> variants = ShownVariants();
   table.header.insert(table.header.end(), variants.begin(), variants.end());
@@ -104,14 +106,15 @@ Result<ExperimentPlan> PlanGhosts(const Study& study) {
   }
   if (inputs["sequences"].empty()) return plan;
   RecordOptions(BackgroundOptions(), inputs["defaults"]);
+  const std::string name = study.quick ? "ghosts-quick" : "ghosts";
   plan.cells.push_back(std::make_shared<const Cell>(
-      Cell{.name = "ghosts",
+      Cell{.name = name,
            .inputs = std::move(inputs),
-           .product = "ghosts",
+           .product = name,
            .alone = true,
            .run = [study](const CellRun& cell) { return RunGhosts(study, cell); }}));
-  plan.report = [](const CellResults& results, ReportPage& page, ExperimentReport& report) {
-    return ReportGhosts(results.at("ghosts"), page, report);
+  plan.report = [name](const CellResults& results, ReportPage& page, ExperimentReport& report) {
+    return ReportGhosts(results.at(name), name, page, report);
   };
   return plan;
 }

@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr FrameIndex kPetsFrames = 795;
+constexpr FrameIndex kQuickFrames = 100;  // of PETS
 constexpr const char* kPetsTruth = "gt-mot15-3d.txt";
 constexpr const char* kVideo = "vtest.avi";
 constexpr const char* kVideoOfPackage = "/usr/share/doc/opencv-doc/examples/data";
@@ -42,7 +43,9 @@ Result<TrackRecording> Simulated(const Study& study, const std::string& name,
 TrackRecording Real(const Study& study, std::string name, std::string title, std::string_view text,
                     const fs::path& data) {
   TrackRecording recording{.name = std::move(name), .title = std::move(title)};
-  recording.frames = std::min(kPetsFrames, study.frames.value_or(kPetsFrames));
+  if (study.quick) recording.name += "-quick";
+  const FrameIndex all = study.quick ? kQuickFrames : kPetsFrames;
+  recording.frames = std::min(all, study.frames.value_or(all));
   recording.title += fmt::format(", {} frames", *recording.frames);
   recording.inputs["scene"] = text;
   recording.inputs["frames"] = *recording.frames;

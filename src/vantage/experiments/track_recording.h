@@ -45,13 +45,13 @@ Result<TrackRecording> FloorballRecording(const Study& study);
 Result<TrackRecording> CampusRecording(const Study& study);
 
 /// Real: the video of PETS 2009 S2.L1, View_001, alone, DATA/pets2009/vtest.avi or that of Debian's
-/// package opencv-doc, with DATA/pets2009/gt-mot15-3d.txt. None, and a line in `skipped`, when they
-/// are not there.
+/// package opencv-doc, with DATA/pets2009/gt-mot15-3d.txt; quick: 100 frames. None, and a line in
+/// `skipped`, when they are not there.
 Result<std::optional<TrackRecording>> PetsVideoRecording(const Study& study,
                                                          std::vector<std::string>& skipped);
 
 /// Real: a detector's boxes in seven views of PETS 2009 S2.L1 (DATA/pets2009/detections), drawn
-/// filled as masks. None, and a line in `skipped`, when they are not there.
+/// filled as masks; quick: 100 frames. None, and a line in `skipped`, when they are not there.
 Result<std::optional<TrackRecording>> PetsBoxesRecording(const Study& study,
                                                          std::vector<std::string>& skipped);
 
