@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "vantage/pipeline/flow.h"
 #include "vantage/pipeline/mask_stream.h"
 #include "vantage/video/mask_writer.h"
 
@@ -36,23 +37,24 @@ Result<Json> WriteMasks(const TrackRecording& recording, const BackgroundOptions
                            size, scene.frames_per_second, false));
     writers.push_back(std::move(writer));
   }
-  std::vector<cv::Mat> masks;
-  FrameIndex frames = 0;
-  for (;; ++frames) {
-    if (run.control.Stopped()) return Cancelled();
-    VANTAGE_ASSIGN_OR_RETURN(const bool more, stream.Read(masks));
-    if (!more) break;
-    for (std::size_t camera = 0; camera < masks.size(); ++camera) {
-      if (masks[camera].empty()) {
-        return Fail("camera {}: has no picture at frame {}", scene.cameras[camera].name, frames);
-      }
-      VANTAGE_RETURN_IF_ERROR(writers[camera].Write(frames, masks[camera]));
-    }
-  }
+  MaskStages stages(stream, 1);
+  const FlowStage writing = {
+      .in_order = true, .work = [&](std::int64_t frame, int) -> Result<bool> {
+        for (std::size_t camera = 0; camera < writers.size(); ++camera) {
+          const cv::Mat& mask = stages.masks[frame][camera];
+          if (mask.empty()) {
+            return Fail("camera {}: has no picture at frame {}", scene.cameras[camera].name, frame);
+          }
+          VANTAGE_RETURN_IF_ERROR(writers[camera].Write(frame, mask));
+        }
+        return true;
+      }};
+  const FlowStage chain[] = {stages.Reading(), stages.Background(1), writing};
+  VANTAGE_ASSIGN_OR_RETURN(const FlowReport flow, RunFlow(chain, run.threads, run.control));
   for (MaskWriter& writer : writers) VANTAGE_RETURN_IF_ERROR(writer.Finish());
-  return Json{{"frames", frames},
-              {"read_secs", stream.read_secs()},
-              {"background_secs", stream.background_secs()}};
+  return Json{{"frames", flow.frames},
+              {"read_secs", flow.stage_secs[0]},
+              {"background_secs", flow.stage_secs[1]}};
 }
 
 Json SecondsOf(const TrackingReport& report) {
