@@ -153,12 +153,13 @@ void FixedView::TracePixel(const FixedWorld& world, const PixelRays& rays, int x
       sums.diffuse[group] +=
           (1 - mirrored) * light[group] * surface.color.cwiseProduct(world.GroupColor(g));
     }
-    if (mirrored > 0) {
+    // Every second sample mirrors for two.
+    if (mirrored > 0 && sample % 2 == 0) {
       const std::uint64_t turn = Hash(key, sample);
       const Ray onwards{point + 2e-3F * hit.normal,
                         MirroredDirection(ray.direction, hit.normal, material.roughness_rad,
                                           UpperUnit(turn), LowerUnit(turn))};
-      AddMirrored(world, onwards, world.solid().Trace(onwards), mirrored, key, sample,
+      AddMirrored(world, onwards, world.solid().Trace(onwards), 2 * mirrored, key, sample,
                   sums.mirrored);
     }
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "vantage/base/parallel.h"
@@ -23,7 +24,6 @@ constexpr int kTraced = kCorners + 2;  // with one more around them: for smoothi
 constexpr float kLargestSide_m = 300;
 constexpr float kLongestShadow_m = 15;
 constexpr float kDimReach_m = 1.2F;  // of things on the ambient light around them
-constexpr float kLift_m = 2e-3F;     // of the rays' origins off the ground
 
 struct Ball {
   Vector3f center_m;
@@ -255,14 +255,15 @@ void GroundLight::Trace(const FixedWorld& world, const Moving& moving, std::uint
         if (wanted[at(x, y, kTraced)] == 0) continue;
         const Vector2f ground = PointOf(left + x - 1, top + y - 1);
         const std::uint64_t key = Hash(0x67726e64U, left + x, top + y);
-        std::array<Vector3f, 8> goals;
-        for (std::size_t ray = 0; ray < goals.size(); ++ray) {
+        std::array<Ray, 8> rays;
+        for (std::size_t ray = 0; ray < rays.size(); ++ray) {
           const float u = (static_cast<float>(ray % 4) + UpperUnit(key)) / 4;
           const float v = (static_cast<float>(ray / 4) + LowerUnit(key)) / 2;
-          goals[ray] = LampPoint(lamp, u, v);
+          rays[ray] =
+              RayTowards({ground.x(), ground.y(), 0}, Vector3f::UnitZ(), LampPoint(lamp, u, v));
         }
-        const int count = CountSeen(moving.together(), {ground.x(), ground.y(), kLift_m}, goals);
-        seen[at(x, y, kTraced)] = static_cast<float>(count) / 8;
+        const int blocked = std::popcount(BlockedRays(moving.together(), rays));
+        seen[at(x, y, kTraced)] = 1 - static_cast<float>(blocked) / 8;
       }
     }
     // Few rays a texel, smoothed over nine of them.

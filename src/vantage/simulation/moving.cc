@@ -109,24 +109,29 @@ GroupShares Moving::LightAt(const FixedWorld& world, std::size_t i, const Hit& h
     const float v = (static_cast<float>(ray / 2) + 0.5F) / 2 + shift_v;
     return std::pair(u - std::floor(u), v - std::floor(v));
   };
-  int unblocked = 0;
+  // All rays of the point at once: their group, and what each adds to it.
+  std::array<Ray, kRays * kMaxGroups> rays;
+  std::array<std::pair<std::size_t, float>, rays.size()> gains;
+  std::size_t count = 0;
   for (int ray = 0; ray < kRays; ++ray) {
     const auto [u, v] = place(ray);
-    const Ray around{point_m + 2e-3F * hit.normal, CosineDirection(hit.normal, u, v), kDimReach_m};
-    if (!IsBlocked(together_.get(), around)) ++unblocked;
+    rays[count] = {point_m + 2e-3F * hit.normal, CosineDirection(hit.normal, u, v), kDimReach_m};
+    gains[count++] = {0, AmbientShare(hit.normal) / kRays};
   }
-  light[0] = AmbientShare(hit.normal) * static_cast<float>(unblocked) / kRays;
   for (std::size_t lamp = 0; lamp < world.lighting().lamps.size(); ++lamp) {
     if (open[1 + lamp] <= 0) continue;
-    float seen = 0;
     for (int ray = 0; ray < kRays; ++ray) {
       const auto [u, v] = place(ray);
-      Ray way = RayTowards(point_m, hit.normal, LampPoint(world.lighting().lamps[lamp], u, v));
+      Ray& way = rays[count];
+      way = RayTowards(point_m, hit.normal, LampPoint(world.lighting().lamps[lamp], u, v));
       way.far_m = std::min(way.far_m, kShadeReach_m);
       const float cosine = way.direction.dot(hit.normal);
-      if (cosine > 0 && !IsBlocked(together_.get(), way)) seen += cosine;
+      if (cosine > 0) gains[count++] = {1 + lamp, open[1 + lamp] * cosine / kRays};
     }
-    light[1 + lamp] = open[1 + lamp] * seen / kRays;
+  }
+  const std::uint32_t blocked = BlockedRays(together_.get(), std::span(rays).first(count));
+  for (std::size_t ray = 0; ray < count; ++ray) {
+    if ((blocked >> ray & 1U) == 0) light[gains[ray].first] += gains[ray].second;
   }
   return light;
 }

@@ -248,32 +248,37 @@ bool IsBlocked(RTCScene scene, const Ray& ray) {
   return query.tfar < 0;
 }
 
-int CountSeen(RTCScene scene, const Vector3f& from_m, const std::array<Vector3f, 8>& goals_m) {
+std::uint32_t BlockedRays(RTCScene scene, std::span<const Ray> rays) {
+  constexpr std::size_t kLanes = 8;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  RTCRay8 rays;
-  alignas(32) std::array<int, 8> valid;
-  valid.fill(-1);
-  for (std::size_t i = 0; i < 8; ++i) {
-    const Vector3f way = goals_m[i] - from_m;
-    rays.org_x[i] = from_m.x();
-    rays.org_y[i] = from_m.y();
-    rays.org_z[i] = from_m.z();
-    rays.dir_x[i] = way.x();
-    rays.dir_y[i] = way.y();
-    rays.dir_z[i] = way.z();
-    rays.tnear[i] = 0;
-    rays.tfar[i] = 0.995F;
-    rays.time[i] = 0;
-    rays.mask[i] = ~0U;
-    rays.id[i] = 0;
-    rays.flags[i] = 0;
+  std::uint32_t blocked = 0;
+  for (std::size_t first = 0; first < rays.size(); first += kLanes) {
+    RTCRay8 query;
+    alignas(32) std::array<int, kLanes> valid = {};
+    const std::size_t count = std::min(kLanes, rays.size() - first);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const Ray& ray = rays[first + std::min(i, count - 1)];
+      valid[i] = i < count ? -1 : 0;
+      query.org_x[i] = ray.origin_m.x();
+      query.org_y[i] = ray.origin_m.y();
+      query.org_z[i] = ray.origin_m.z();
+      query.dir_x[i] = ray.direction.x();
+      query.dir_y[i] = ray.direction.y();
+      query.dir_z[i] = ray.direction.z();
+      query.tnear[i] = 0;
+      query.tfar[i] = ray.far_m;
+      query.time[i] = 0;
+      query.mask[i] = ~0U;
+      query.id[i] = 0;
+      query.flags[i] = 0;
+    }
+    rtcOccluded8(valid.data(), scene, &context, &query);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (query.tfar[i] < 0) blocked |= 1U << (first + i);
+    }
   }
-  rtcOccluded8(valid.data(), scene, &context, &rays);
-  int seen = 0;
-  for (const float far : rays.tfar) seen += far >= 0 ? 1 : 0;
-  return seen;
+  return blocked;
 }
 
 std::array<Vector3f, 8> BlockCorners(const Block& block) {

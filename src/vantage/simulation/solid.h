@@ -81,10 +81,8 @@ Result<Scene> JoinSolids(RTCDevice device, std::span<const Solid* const> solids)
 /// Whether something stands between the ray's origin and its end.
 bool IsBlocked(RTCScene scene, const Ray& ray);
 
-/// How many of eight points are seen from one, which has been lifted off its surface. Faster than
-/// eight single rays.
-int CountSeen(RTCScene scene, const Eigen::Vector3f& from_m,
-              const std::array<Eigen::Vector3f, 8>& goals_m);
+/// Bit i tells whether ray i of at most 32 is blocked: several at a time, which is faster.
+std::uint32_t BlockedRays(RTCScene scene, std::span<const Ray> rays);
 
 /// The corners of a block: index bits 0, 1, 2 tell the sides along its own x, y, z.
 std::array<Eigen::Vector3f, 8> BlockCorners(const Block& block);
