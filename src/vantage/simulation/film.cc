@@ -77,9 +77,8 @@ Result<std::vector<Shot>> Film::Shoot(FrameIndex frame, int threads) {
   VANTAGE_ASSIGN_OR_RETURN(state.moving, Moving::Prepare(state.device.get(), state.world,
                                                          std::move(things), state.moving));
   state.ground->Update(state.world, state.moving, threads);
-  FrameLight light{state.world, state.moving, *state.ground, {}};
+  FrameLight light{state.world, state.moving, *state.ground, {}, gains != state.gains};
   std::copy(gains.begin(), gains.end(), light.gains.begin());
-  const bool again = gains != state.gains;
   state.gains = gains;
 
   std::vector<View>& views = state.views;
@@ -91,7 +90,7 @@ Result<std::vector<Shot>> Film::Shoot(FrameIndex frame, int threads) {
     views[static_cast<std::size_t>(i / count)].See(light, static_cast<std::size_t>(i % count));
   });
   ParallelFor(threads, cameras,
-              [&](std::int64_t i) { views[static_cast<std::size_t>(i)].Arrange(light, again); });
+              [&](std::int64_t i) { views[static_cast<std::size_t>(i)].Arrange(light); });
 
   std::vector<Shot> shots(views.size());
   struct TileRow {

@@ -21,10 +21,11 @@ struct Sight {
   cv::Rect box;           ///< around the pixels that met it
   std::int64_t pixels = 0;
 
-  const Hit& At(int x, int y) const {
-    return hits[static_cast<std::size_t>(y - area.y) * static_cast<std::size_t>(area.width) +
-                static_cast<std::size_t>(x - area.x)];
+  std::size_t Index(int x, int y) const {
+    return static_cast<std::size_t>(y - area.y) * static_cast<std::size_t>(area.width) +
+           static_cast<std::size_t>(x - area.x);
   }
+  const Hit& At(int x, int y) const { return hits[Index(x, y)]; }
 };
 
 /// By the rays through pixels' centres.

@@ -113,14 +113,28 @@ void View::BeginFrame(const FrameLight& frame) {
 
 void View::See(const FrameLight& frame, std::size_t thing) {
   ThingSights& sights = sights_[thing];
-  if (sights.done) return;
-  sights.direct = SeeThing(camera_->camera, rays_, frame.moving[thing]);
-  sights.mirrored =
-      SeeThingMirrored(camera_->camera, rays_, frame.world, fixed_, frame.moving[thing]);
-  sights.done = true;
+  if (sights.done && !frame.gains_changed) return;
+  if (!sights.done) {
+    sights.direct = SeeThing(camera_->camera, rays_, frame.moving[thing]);
+    sights.mirrored =
+        SeeThingMirrored(camera_->camera, rays_, frame.world, fixed_, frame.moving[thing]);
+    sights.done = true;
+  }
+  const cv::Rect& area = sights.mirrored.area;
+  sights.mirrored_light.assign(sights.mirrored.hits.size(), Vector3f::Zero());
+  for (std::size_t i = 0; i < sights.mirrored.hits.size(); ++i) {
+    const Hit& hit = sights.mirrored.hits[i];
+    if (!hit.Exists()) continue;
+    const auto at = static_cast<int>(i);
+    const Ray ray =
+        fixed_.MirroredRay(frame.world, rays_, area.x + at % area.width, area.y + at / area.width);
+    sights.mirrored_light[i] = frame.moving.Radiance(
+        frame.world, thing, hit, ray.origin_m + hit.t_m * ray.direction, ray.direction,
+        frame.moving.OpenLightAt(frame.world, thing, hit), frame.gains);
+  }
 }
 
-void View::Arrange(const FrameLight& frame, bool again) {
+void View::Arrange(const FrameLight& frame) {
   visible_.assign(sights_.size(), 0);
   const auto place = [&](const Sight& sight, std::size_t thing, std::vector<Front>& fronts) {
     for (int y = sight.box.y; y < sight.box.y + sight.box.height; ++y) {
@@ -163,10 +177,9 @@ void View::Arrange(const FrameLight& frame, bool again) {
       const std::uint64_t key = frame.ground.Key(ground);
       if (key != 0) keys[tile] = Hash(keys[tile], ground, key);
     }
-    tile_changed_[tile] = again || keys[tile] != tile_keys_[tile] ? 1 : 0;
+    tile_changed_[tile] = frame.gains_changed || keys[tile] != tile_keys_[tile] ? 1 : 0;
   }
   tile_keys_ = std::move(keys);
-  fixed_changed_ = again;
 }
 
 std::int64_t View::ComposeRow(const FrameLight& frame, int tile_row) {
@@ -177,7 +190,7 @@ std::int64_t View::ComposeRow(const FrameLight& frame, int tile_row) {
     const cv::Rect pixels = TilePixels(column, tile_row);
     for (int y = pixels.y; y < pixels.y + pixels.height; ++y) {
       const std::size_t begin = Pixel(pixels.x, y);
-      for (int x = pixels.x; fixed_changed_ && x < pixels.x + pixels.width; ++x) {
+      for (int x = pixels.x; frame.gains_changed && x < pixels.x + pixels.width; ++x) {
         const std::size_t pixel = Pixel(x, y);
         fixed_codes_[pixel] = sensor_.Expose(
             fixed_.Diffuse(pixel, frame.gains) + fixed_.Mirrored(pixel, frame.gains), x, y);
@@ -265,12 +278,8 @@ Vector3f View::MirroredLight(const FrameLight& frame, int x, int y) const {
   const std::size_t pixel = Pixel(x, y);
   const int thing = mirrored_front_[pixel].thing;
   if (thing < 0) return fixed_.Mirrored(pixel, frame.gains) / fixed_.At(pixel).mirror_share;
-  const auto index = static_cast<std::size_t>(thing);
-  const Ray mirrored = fixed_.MirroredRay(frame.world, rays_, x, y);
-  const Hit& hit = sights_[index].mirrored.At(x, y);
-  return frame.moving.Radiance(frame.world, index, hit,
-                               mirrored.origin_m + hit.t_m * mirrored.direction, mirrored.direction,
-                               frame.moving.OpenLightAt(frame.world, index, hit), frame.gains);
+  const ThingSights& sights = sights_[static_cast<std::size_t>(thing)];
+  return sights.mirrored_light[sights.mirrored.Index(x, y)];
 }
 
 Vector3f View::FrontRadiance(const FrameLight& frame, int x, int y) const {

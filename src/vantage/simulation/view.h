@@ -28,6 +28,7 @@ struct FrameLight {
   const Moving& moving;
   const GroundLight& ground;
   GroupShares gains;
+  bool gains_changed;  ///< since the frame before
 };
 
 /// The steps of a frame, in order: BeginFrame, SeeThing for each thing, Arrange, ComposeRows for
@@ -45,8 +46,8 @@ class View {
   /// Takes over the sights of things that stayed.
   void BeginFrame(const FrameLight& frame);
   void See(const FrameLight& frame, std::size_t thing);
-  /// Finds what each pixel shows and which tiles changed; `again`: all of them did.
-  void Arrange(const FrameLight& frame, bool again);
+  /// Finds what each pixel shows and which tiles changed.
+  void Arrange(const FrameLight& frame);
   /// Pixels traced anew in a row of tiles.
   std::int64_t ComposeRow(const FrameLight& frame, int tile_row);
   int tile_rows() const { return tile_rows_; }
@@ -68,6 +69,7 @@ class View {
     bool done = false;
     Sight direct;
     Sight mirrored;
+    std::vector<Eigen::Vector3f> mirrored_light;  ///< radiance at the hits of `mirrored`
   };
 
   std::size_t Pixel(int x, int y) const {
@@ -100,7 +102,6 @@ class View {
   std::vector<std::int64_t> visible_;  // pixels of each thing
   std::vector<std::uint64_t> tile_keys_;
   std::vector<std::uint8_t> tile_changed_;
-  bool fixed_changed_ = true;
   std::vector<LightCode> fixed_codes_;  // of the fixed world in the frame's light
   std::vector<LightCode> codes_;
 };
