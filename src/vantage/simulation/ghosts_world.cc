@@ -42,8 +42,8 @@ void LayGround(Stage& stage, Dice& dice) {
                                    .seed = dice.Seed()});
   stage.blocks.push_back(Patch({0, 0}, {100, 100}, 0, 0, asphalt));
   stage.blocks.push_back(Patch({0, 10.6F}, {40, 1.9F}, 0, 1, paving));
-  // The car stands on hatched ground beside a chequered one: ghosts over strong edges.
-  stage.blocks.push_back(Patch({4.5F, 6.4F}, {2.7F, 1.5F}, 0, 2, hatching));
+  // The first one's ghost lies over checks, the car's on asphalt before bricks; hatching beside it.
+  stage.blocks.push_back(Patch({10.1F, 6.4F}, {2.7F, 1.5F}, 0, 2, hatching));
   stage.blocks.push_back(Patch({0.2F, 5.6F}, {1.2F, 1.2F}, 0, 2.5F, checks));
   for (const float x : {1.7F, 7.3F, 12.9F}) {
     stage.blocks.push_back(GroundLine({x, 4.6F}, {x, 8.2F}, 0.12F, 3, white));
