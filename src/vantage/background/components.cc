@@ -3,6 +3,7 @@
 #include "vantage/background/components.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <opencv2/core.hpp>
@@ -33,12 +34,24 @@ void Join(std::vector<Run>& runs, int a, int b) {
   runs[static_cast<std::size_t>(std::max(a, b))].parent = std::min(a, b);
 }
 
+template <std::size_t kBytes>
+bool AllZero(const std::uint8_t* pixels) {
+  std::array<std::uint64_t, kBytes / 8> words;
+  std::memcpy(words.data(), pixels, kBytes);
+  std::uint64_t all = 0;
+  for (const std::uint64_t word : words) all |= word;
+  return all == 0;
+}
+
 void AppendRuns(const std::uint8_t* pixels, int columns, int row, std::vector<Run>& runs) {
   int x = 0;
   while (x < columns) {
-    // Most of a mask is background: eight pixels at a time.
-    std::uint64_t eight = 0;
-    if (columns - x >= 8 && (std::memcpy(&eight, pixels + x, 8), eight == 0)) {
+    // Most of a mask is background: many pixels at a time.
+    if (columns - x >= 64 && AllZero<64>(pixels + x)) {
+      x += 64;
+      continue;
+    }
+    if (columns - x >= 8 && AllZero<8>(pixels + x)) {
       x += 8;
       continue;
     }
