@@ -34,7 +34,7 @@ struct DrawnData {
   fs::path sequence() const { return data() / "sbi/IBMtest2"; }
   fs::path out() const { return folder / "out"; }
   Outcome Run(const std::string& more = "") const {
-    return RunProgram(fmt::format("reproduce ghosts --data '{}' -o '{}' --quiet {}",
+    return RunProgram(fmt::format("reproduce fig9 --quick --data '{}' -o '{}' --quiet {}",
                                   data().string(), out().string(), more));
   }
 };
@@ -45,13 +45,9 @@ TEST(Reproduce, WritesThePageFromWhatIsThere) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("sbi/CaVignal is not in the data folder"));
   EXPECT_THAT(outcome.out, HasSubstr("report.html"));
-  EXPECT_THAT(Entries(drawn.out()),
-              ElementsAre("figures.csv", "ghosts.csv", "ghosts.html", "ghosts.json", "ghosts.json",
-                          "ghosts_frames.csv", "report.html", "reproduce.json"));
-  const std::string csv = ReadTextFile(drawn.out() / "ghosts/ghosts.csv").value();
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 61);
   EXPECT_THAT(ReadTextFile(drawn.out() / "report.html").value(), HasSubstr("IBMtest2"));
-  EXPECT_THAT(ReadTextFile(drawn.out() / "figures.csv").value(), HasSubstr("\nghosts,none,f1,0."));
+  EXPECT_THAT(ReadTextFile(drawn.out() / "figures.csv").value(),
+              HasSubstr("\nfig9,none LUV M real,f1,0."));
 }
 
 TEST(Reproduce, ASecondRunKeepsWhatIsThere) {
@@ -59,15 +55,16 @@ TEST(Reproduce, ASecondRunKeepsWhatIsThere) {
   ASSERT_EQ(drawn.Run().status, 0);
   const std::string page = ReadTextFile(drawn.out() / "report.html").value();
   const Outcome again = drawn.Run();
-  EXPECT_THAT(again.out, HasSubstr("0 computed, 1 kept"));
+  EXPECT_THAT(again.out, HasSubstr("0 computed, 16 kept"));
   EXPECT_EQ(ReadTextFile(drawn.out() / "report.html").value(), page);
-  fs::resize_file(drawn.out() / "cells/ghosts.json", 60);
+  fs::resize_file(drawn.out() / "cells/ghosts-ibmtest2-fep.json", 60);
   const Outcome damaged = drawn.Run("--json --threads 1");
   ASSERT_EQ(damaged.status, 0) << damaged.err;
   const auto json = nlohmann::json::parse(damaged.out);
   EXPECT_EQ(json["cells_computed"], 1);
   EXPECT_EQ(json["skipped"].size(), 3u);
-  EXPECT_THAT(json["notes"][0].get<std::string>(), HasSubstr("ghosts.json: is damaged"));
+  EXPECT_THAT(json["notes"][0].get<std::string>(),
+              HasSubstr("ghosts-ibmtest2-fep.json: is damaged"));
   EXPECT_EQ(ReadTextFile(drawn.out() / "report.html").value(), page);
 }
 
@@ -91,16 +88,33 @@ TEST(Reproduce, ASimulatedTableInItsSmallestForm) {
   EXPECT_EQ(again["figures"], json["figures"]);
 }
 
+TEST(Reproduce, SimulatedMasksInTheirSmallestForm) {
+  const TemporaryFolder folder;
+  const std::string command =
+      fmt::format("reproduce fig1 fig5 --quick --frames 8 -o '{}/out' --quiet --json --threads 2",
+                  folder.path().string());
+  const Outcome outcome = RunProgram(command);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["cells_computed"], 4);  // two recordings, two grids
+  EXPECT_EQ(json["findings"].size(), 1u);
+  const std::string html = ReadTextFile(folder.path() / "out/report.html").value();
+  pugi::xml_document page;
+  EXPECT_TRUE(page.load_string(html.c_str()));
+  EXPECT_GT(page.select_nodes("//img").size(), 15u);
+  EXPECT_EQ(nlohmann::json::parse(RunProgram(command).out)["cells_computed"], 0);
+}
+
 TEST(Reproduce, WrongUsage) {
   const DrawnData drawn;
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   ExpectOneLine(RunProgram("reproduce"), 2, "experiment is required");
-  ExpectOneLine(RunProgram("reproduce ghosts"), 2, "--output is required");
-  ExpectOneLine(RunProgram("reproduce ghosts --frames -1 -o " + out), 2, "--frames");
+  ExpectOneLine(RunProgram("reproduce fig9"), 2, "--output is required");
+  ExpectOneLine(RunProgram("reproduce fig9 --frames -1 -o " + out), 2, "--frames");
   ExpectOneLine(RunProgram("reproduce table9 --quiet -o " + out), 1,
                 "table9: no such experiment; there are all, ");
-  ExpectOneLine(RunProgram("reproduce ghosts --quiet -o " + out), 1, "nothing can be run: ghosts");
+  ExpectOneLine(RunProgram("reproduce fig9 --quiet -o " + out), 1, "nothing can be run: fig9");
   EXPECT_FALSE(fs::exists(folder / "out"));
   const Outcome help = RunProgram("reproduce --help");
   EXPECT_EQ(help.status, 0);
@@ -111,7 +125,7 @@ TEST(Reproduce, WrongUsage) {
 TEST(Reproduce, MissingData) {
   const TemporaryFolder folder;
   const auto run = [&](const std::string& data) {
-    return RunProgram(fmt::format("reproduce ghosts --data '{0}/{1}' -o '{0}/out' --quiet",
+    return RunProgram(fmt::format("reproduce fig9 --quick --data '{0}/{1}' -o '{0}/out' --quiet",
                                   folder.path().string(), data));
   };
   ExpectOneLine(run("none"), 1, "none: no such folder");
@@ -130,9 +144,10 @@ TEST(Reproduce, AnOutputThatHoldsSomethingElse) {
     ExpectOneLine(drawn.Run(more), 1, "already holds files");
     EXPECT_EQ(Entries(drawn.out()), std::vector<std::string>{"mine.txt"});
   }
-  ExpectOneLine(RunProgram(fmt::format("reproduce ghosts --data '{}' -o /dev/null/out --quiet",
-                                       drawn.data().string())),
-                1, "/dev/null");
+  ExpectOneLine(
+      RunProgram(fmt::format("reproduce fig9 --quick --data '{}' -o /dev/null/out --quiet",
+                             drawn.data().string())),
+      1, "/dev/null");
 }
 
 TEST(Reproduce, TheOutputMayNotReplaceTheData) {
@@ -140,9 +155,10 @@ TEST(Reproduce, TheOutputMayNotReplaceTheData) {
   const std::size_t files = Entries(drawn.data()).size();
   for (const char* inside : {"", "/", "/sbi", "/sbi/IBMtest2", "/new", "/.."}) {
     const std::string out = drawn.data().string() + inside;
-    ExpectOneLine(RunProgram(fmt::format("reproduce ghosts --data '{}' -o '{}' --quiet --force",
-                                         drawn.data().string(), out)),
-                  1, "must not lie in each other");
+    ExpectOneLine(
+        RunProgram(fmt::format("reproduce fig9 --quick --data '{}' -o '{}' --quiet --force",
+                               drawn.data().string(), out)),
+        1, "must not lie in each other");
   }
   EXPECT_EQ(Entries(drawn.data()).size(), files);
 }

@@ -156,7 +156,13 @@ Result<StudyReport> RunStudy(std::span<const Experiment> experiments, const Stud
   for (std::size_t i = 0; i < plans.size(); ++i) {
     ReportPage& section = sections.emplace_back(experiments[i].title);
     ExperimentReport part;
-    VANTAGE_RETURN_IF_ERROR(plans[i].report(done.results, section, part));
+    try {
+      VANTAGE_RETURN_IF_ERROR(plans[i].report(done.results, section, part));
+    } catch (const Json::exception& error) {
+      // Somebody edited a kept result.
+      return Fail("{}: a result of {} cannot be used ({}); run with --force",
+                  (study.output / "cells").string(), experiments[i].name, error.what());
+    }
     for (Figure& figure : part.figures) {
       figure.experiment = experiments[i].name;
       report.figures.push_back(std::move(figure));

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <pugixml.hpp>
@@ -174,11 +175,13 @@ TEST(RunStudy, NothingToRun) {
 
 TEST(ChooseExperiments, ByNamesInTheOrderOfThePage) {
   EXPECT_THAT(ChooseExperiments({"all"}).value(), SizeIs(Experiments().size()));
-  EXPECT_THAT(ChooseExperiments({"ghosts", "ghosts"}).value(), SizeIs(1));
+  EXPECT_THAT(ChooseExperiments({"fig9", "fig9"}).value(), SizeIs(1));
   for (const Experiment& one : Experiments()) {
-    EXPECT_EQ(ChooseExperiments({one.name}).value().at(0).name, one.name);
-    for (const std::string& other : one.also) {
-      EXPECT_EQ(ChooseExperiments({other}).value().at(0).name, one.name);
+    std::vector<std::string> names = one.also;
+    names.push_back(one.name);
+    for (const std::string& name : names) {
+      const std::vector<Experiment> chosen = ChooseExperiments({name}).value();
+      EXPECT_EQ(std::ranges::count(chosen, one.name, &Experiment::name), 1) << name;
     }
   }
   EXPECT_THAT(MessageOf(ChooseExperiments({"ghosts", "table9"})),

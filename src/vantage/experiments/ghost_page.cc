@@ -1,41 +1,18 @@
 // SPDX-FileCopyrightText: The Vantage authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "vantage/base/version.h"
 #include "vantage/experiments/chart.h"
-#include "vantage/experiments/ghost_findings.h"
 #include "vantage/experiments/ghost_report.h"
-#include "vantage/experiments/report_page.h"
+#include "vantage/experiments/ghost_settings.h"
 
 namespace vantage {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-struct Setting {
-  const char* name;
-  ColorSpace color;
-  LearningRate rate;
-};
-/// As the thesis's figures have them: M and O for the modified and the original rate.
-constexpr std::array<Setting, 4> kSettings = {
-    {{"LUV M", ColorSpace::kLuv, LearningRate::kModified},
-     {"LUV O", ColorSpace::kLuv, LearningRate::kOriginal},
-     {"RGB M", ColorSpace::kRgb, LearningRate::kModified},
-     {"RGB O", ColorSpace::kRgb, LearningRate::kOriginal}}};
-
-struct MeasureColumn {
-  const char* name;
-  double MaskMeasures::*value;
-};
-constexpr std::array<MeasureColumn, 3> kMeasures = {{{"Recall", &MaskMeasures::recall},
-                                                     {"Precision", &MaskMeasures::precision},
-                                                     {"F1", &MaskMeasures::f1}}};
 
 std::string Text(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3f}", value); }
 std::string Signed(double value) { return std::isnan(value) ? "-" : fmt::format("{:+.3f}", value); }
@@ -44,7 +21,7 @@ std::string Signed(double value) { return std::isnan(value) ? "-" : fmt::format(
 std::vector<std::string> Names(const GhostResults& results, bool peers) {
   std::vector<std::string> names;
   for (const GhostVariant& variant : results.variants) {
-    if ((variant.options.method != MethodKind::kMixture) != peers) continue;
+    if (variant.IsPeer() != peers) continue;
     if (std::find(names.begin(), names.end(), variant.name) == names.end()) {
       names.push_back(variant.name);
     }
@@ -71,7 +48,7 @@ std::string ShareOfPeak(const GhostCaseResult& in, const GhostRun& run, const Gh
 
 void AddSideBySide(const GhostResults& results, ReportPage& page) {
   const double alpha = MixtureOptions().alpha;
-  page.Heading("Side by side, all at their defaults");
+  page.Subheading("Side by side, all at their defaults");
   page.Paragraph(fmt::format(
       "F1. Ours: the mixture with the default options of this version (ghosts by {}, alpha {}). "
       "mog2 and knn: OpenCV's, bare, as they come; what they call shadow is background. "
@@ -81,7 +58,7 @@ void AddSideBySide(const GhostResults& results, ReportPage& page) {
       "there (IBMtest2).",
       DefaultVariantName(), alpha));
   const std::vector<std::string> peers = Names(results, true);
-  PageTable table{.header = {"sequence", "ours", "ours without ghosts"}};
+  PageTable table{.header = {"sequence", "data", "ours", "ours without ghosts"}};
   BarChart chart{.title = "F1 at defaults", .series = {{.name = "ours"}}};
   for (const std::string& peer : peers) {
     table.header.push_back(peer);
@@ -90,8 +67,9 @@ void AddSideBySide(const GhostResults& results, ReportPage& page) {
   std::vector<std::string> below;
   for (const GhostCaseResult& in : results.cases) {
     const double ours = F1Of(FindDefault(results, in, DefaultVariantName(), alpha));
-    std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{
-        in.used.name, Text(ours), Text(F1Of(FindDefault(results, in, "none", alpha)))});
+    std::vector<std::string>& row = table.rows.emplace_back(
+        std::vector<std::string>{in.used.name, in.used.Origin(), Text(ours),
+                                 Text(F1Of(FindDefault(results, in, "none", alpha)))});
     chart.groups.push_back(in.used.name);
     chart.series[0].values.push_back(ours);
     for (std::size_t i = 0; i < peers.size(); ++i) {
@@ -112,7 +90,7 @@ void AddSideBySide(const GhostResults& results, ReportPage& page) {
 }
 
 void AddEffect(const GhostResults& results, ReportPage& page) {
-  page.Heading("What ghost detection does, at the default colour and rate");
+  page.Subheading("What ghost detection does, at the default colour and rate");
   page.Paragraph(
       "Without ghost detection, with FEP in the thesis's plain form, and with the default. "
       "Differences are to no detection. False foreground at the check is given in percent of the "
@@ -162,33 +140,13 @@ void AddLines(const GhostResults& results, const GhostCaseResult& in, ReportPage
   page.Figure(charts, "At the default colour and rate.");
 }
 
-void AddBars(const GhostResults& results, const GhostCaseResult& in, double alpha,
-             ReportPage& page) {
-  const std::vector<std::string> names = Names(results, false);
-  std::vector<std::string> charts;
-  for (const MeasureColumn& measure : kMeasures) {
-    BarChart chart{.title = fmt::format("{}, alpha {}", measure.name, alpha), .groups = names};
-    for (const Setting& setting : kSettings) {
-      BarSeries& series = chart.series.emplace_back(BarSeries{.name = setting.name});
-      for (const std::string& name : names) {
-        const GhostRun* run = results.Find(in, name, setting.color, setting.rate, alpha);
-        series.values.push_back(run == nullptr ? kNan : run->measures.*measure.value);
-      }
-    }
-    charts.push_back(ToSvg(chart));
-  }
-  page.Figure(charts, fmt::format("As the thesis's figures 8 to 11: {}, alpha {}. M: modified, O: "
-                                  "original learning rate.",
-                                  in.used.name, alpha));
-}
-
 void AddTable(const GhostResults& results, const GhostCaseResult& in, double alpha,
               ReportPage& page) {
   PageTable table{
       .header = {"rule"},
       .caption = fmt::format("{}, alpha {}: R recall, P precision{}", in.used.name, alpha,
                              in.used.check ? ", FP false pixels at the check" : "")};
-  for (const Setting& setting : kSettings) {
+  for (const GhostSetting& setting : kGhostSettings) {
     for (const char* column : {"R", "P", "F1"}) {
       table.header.push_back(fmt::format("{} {}", setting.name, column));
     }
@@ -196,9 +154,9 @@ void AddTable(const GhostResults& results, const GhostCaseResult& in, double alp
   }
   for (const std::string& name : Names(results, false)) {
     std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{name});
-    for (const Setting& setting : kSettings) {
+    for (const GhostSetting& setting : kGhostSettings) {
       const GhostRun* run = results.Find(in, name, setting.color, setting.rate, alpha);
-      for (const MeasureColumn& measure : kMeasures) {
+      for (const GhostMeasure& measure : kGhostMeasures) {
         row.push_back(run == nullptr ? "-" : Text(run->measures.*measure.value));
       }
       if (!in.used.check) continue;
@@ -209,19 +167,24 @@ void AddTable(const GhostResults& results, const GhostCaseResult& in, double alp
   page.Table(table);
 }
 
+std::string PlaceOf(const GhostCase& one) {
+  return one.Simulated() ? fmt::format("preset {}, camera {}", one.preset, one.camera + 1)
+                         : one.sequence.generic_string();
+}
+
 void AddCase(const GhostResults& results, const GhostCaseResult& in, ReportPage& page) {
   const std::vector<MaskFrameCounts>& frames = in.runs.front().frames;
-  page.Heading(in.used.name);
+  page.Subheading(fmt::format("{} ({})", in.used.name, in.used.Origin()));
   page.Paragraph(in.used.note);
   std::vector<std::string> facts = {
-      fmt::format("{}, {} x {} px; the methods see it from frame {} on, {} frames",
-                  in.used.sequence.generic_string(), in.size.width, in.size.height, in.used.begin,
-                  in.frames_shown),
+      fmt::format("{}: {}, {} x {} px; the methods see it from frame {} on, {} frames",
+                  in.used.Origin(), PlaceOf(in.used), in.size.width, in.size.height,
+                  in.used.span.begin, in.frames_shown),
       fmt::format("{} frames count, from {} to {}: those with truth, in the sequence's own "
                   "temporal range{}",
                   frames.size(), frames.front().frame, frames.back().frame,
-                  in.used.first > 0 || in.used.last != GhostCase().last
-                      ? fmt::format(", and in {} to {}", in.used.first, in.used.last)
+                  in.used.span.first > 0 || in.used.span.last != FrameSpan().last
+                      ? fmt::format(", and in {} to {}", in.used.span.first, in.used.span.last)
                       : ""),
       in.roi ? "pixels outside its region of interest, and with the labels 85 and 170, do not count"
              : "it has no region of interest that can be used; pixels with the labels 85 and 170 "
@@ -229,20 +192,16 @@ void AddCase(const GhostResults& results, const GhostCaseResult& in, ReportPage&
   facts.insert(facts.end(), in.notes.begin(), in.notes.end());
   page.List(facts);
   if (in.used.ghost) AddLines(results, in, page);
-  for (const double alpha : AlphasOf(results)) {
-    AddBars(results, in, alpha, page);
-    AddTable(results, in, alpha, page);
-  }
+  for (const double alpha : AlphasOf(results)) AddTable(results, in, alpha, page);
 }
 
 void AddSeconds(const GhostResults& results, ReportPage& page) {
-  page.Heading("Time");
-  page.Paragraph(fmt::format(
+  page.Subheading("Time");
+  page.Paragraph(
       "Milliseconds per frame of the whole background stage, wall-clock, mean over the runs of "
       "each "
-      "rule; every run is in ghosts.csv. {} runs went on at once, so that these are above what "
-      "one alone needs; OpenCV's methods use threads of their own.",
-      results.threads));
+      "rule; every run is in ghosts.csv. Several cells may have run at once, so that these are "
+      "above what one alone needs; OpenCV's methods use threads of their own.");
   PageTable table{.header = {"rule"}};
   for (const GhostCaseResult& in : results.cases) table.header.push_back(in.used.name);
   std::vector<std::string> names = Names(results, false);
@@ -265,7 +224,7 @@ void AddSeconds(const GhostResults& results, ReportPage& page) {
 }
 
 void AddDefaults(ReportPage& page) {
-  page.Heading("Defaults");
+  page.Subheading("Defaults");
   page.Paragraph(
       "Options of the background stage that every run used where the tables say nothing "
       "else.");
@@ -280,30 +239,13 @@ void AddDefaults(ReportPage& page) {
 
 }  // namespace
 
-std::string GhostPage(const GhostResults& results) {
-  ReportPage page("Ghosts in background subtraction");
-  page.Paragraph(fmt::format(
-      "Written by vantage {} (vantage reproduce ghosts) from the sequences in {}, in {:.0f} "
-      "seconds on {} threads. It repeats the comparison of the thesis's figures 8 to 11: recall, "
-      "precision and F1 of the masks, without ghost detection and with each criterion, in "
-      "CIE L*u*v* and RGB, with the modified and the original learning rate.",
-      kVersion, results.data.string(), results.seconds, results.threads));
-  page.Paragraph(
-      "The thesis measured on the intermittent-motion category of CDnet and on floorball pictures "
-      "of its own. Neither is used here: the sequences below stand in for them, and its figures "
-      "are not to be compared with these one by one. Rules are judged in the default way unless "
-      "called plain, which is the thesis's form.");
-  if (!results.skipped.empty()) {
-    page.Paragraph("Not run:");
-    page.List(results.skipped);
-  }
+void AddGhostDetails(const GhostResults& results, ReportPage& page) {
+  if (results.cases.empty()) return;
   AddSideBySide(results, page);
   AddEffect(results, page);
-  AddFindings(results, page);
   for (const GhostCaseResult& in : results.cases) AddCase(results, in, page);
   AddSeconds(results, page);
   AddDefaults(page);
-  return page.Html();
 }
 
 }  // namespace vantage

@@ -4,16 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
-
-#include "vantage/base/file.h"
-#include "vantage/base/version.h"
 
 namespace vantage {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// NaN, a ratio of nothing, is an empty field.
 std::string Field(double value) { return std::isnan(value) ? "" : fmt::format("{:.6f}", value); }
@@ -25,29 +19,6 @@ std::string Field(const std::optional<T>& value) {
 
 std::optional<std::int64_t> AtCheck(const GhostCaseResult& in, const GhostRun& run) {
   return in.used.check ? run.FalsePositivesAt(*in.used.check) : std::nullopt;
-}
-
-template <class T>
-Json JsonOf(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json RunJson(const GhostCaseResult& in, const GhostVariant& variant, const GhostRun& run) {
-  const VariantText text = TextOf(variant);
-  return {{"variant", variant.name},
-          {"method", text.method},
-          {"criterion", text.criterion},
-          {"judgement", text.judgement},
-          {"color", text.color},
-          {"rate", text.rate},
-          {"alpha", text.alpha.empty() ? Json() : Json(variant.options.mixture.alpha)},
-          {"recall", run.measures.recall},
-          {"precision", run.measures.precision},
-          {"f1", run.measures.f1},
-          {"fp_peak", run.Peak().counts.false_positives},
-          {"fp_peak_frame", run.Peak().frame},
-          {"fp_at_check", JsonOf(AtCheck(in, run))},
-          {"seconds_per_frame", run.secs_per_frame}};
 }
 
 }  // namespace
@@ -75,7 +46,7 @@ std::vector<double> AlphasOf(const GhostResults& results) {
   std::vector<double> alphas;
   for (const GhostVariant& variant : results.variants) {
     const double alpha = variant.options.mixture.alpha;
-    if (variant.options.method != MethodKind::kMixture) continue;
+    if (variant.IsPeer()) continue;
     if (std::find(alphas.begin(), alphas.end(), alpha) == alphas.end()) alphas.push_back(alpha);
   }
   return alphas;
@@ -83,18 +54,20 @@ std::vector<double> AlphasOf(const GhostResults& results) {
 
 std::string GhostCsv(const GhostResults& results) {
   std::string csv =
-      "sequence,folder,begin,first,last,frames,variant,method,criterion,judgement,threshold,color,"
+      "sequence,data,place,begin,first,last,frames,variant,method,criterion,judgement,threshold,"
+      "color,"
       "rate,alpha,disturbances,open_px,close_px,min_area_px,tp,fp,fn,tn,recall,precision,f1,"
       "specificity,pwc,fp_peak,fp_peak_frame,check,fp_at_check,ghost_frames,ghosts_px,"
-      "seconds_per_frame,method_secs,disturbance_secs,shadow_secs,ghost_secs,cleanup_secs\n";
+      "seconds_per_frame\n";
   for (const GhostCaseResult& in : results.cases) {
     for (std::size_t i = 0; i < in.runs.size(); ++i) {
       const GhostRun& run = in.runs[i];
       const GhostVariant& variant = results.variants[i];
       const VariantText text = TextOf(variant);
       const CleanupOptions& cleanup = variant.options.cleanup;
-      csv += fmt::format("{},{},{},{},{},{},", in.used.name, in.used.sequence.generic_string(),
-                         in.used.begin, run.frames.front().frame, run.frames.back().frame,
+      csv += fmt::format("{},{},{},{},{},{},{},", in.used.name, in.used.Origin(),
+                         in.used.Simulated() ? in.used.preset : in.used.sequence.generic_string(),
+                         in.used.span.begin, run.frames.front().frame, run.frames.back().frame,
                          run.counts.frames);
       csv += fmt::format("{},{},{},{},{},{},{},{},", variant.name, text.method, text.criterion,
                          text.judgement, text.threshold, text.color, text.rate, text.alpha);
@@ -107,11 +80,7 @@ std::string GhostCsv(const GhostResults& results) {
                          Field(run.measures.specificity), Field(run.measures.pwc));
       csv += fmt::format("{},{},{},{},", run.Peak().counts.false_positives, run.Peak().frame,
                          Field(in.used.check), Field(AtCheck(in, run)));
-      const BackgroundReport& report = run.report;
-      csv += fmt::format("{},{},{:.7f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", report.ghost_frames,
-                         report.ghosts_px, run.secs_per_frame, report.method_secs,
-                         report.disturbance_secs, report.shadow_secs, report.ghost_secs,
-                         report.cleanup_secs);
+      csv += fmt::format("{},{},{:.7f}\n", run.ghost_frames, run.ghosts_px, run.secs_per_frame);
     }
   }
   return csv;
@@ -134,41 +103,6 @@ std::string GhostFramesCsv(const GhostResults& results) {
     }
   }
   return csv;
-}
-
-Json GhostJson(const GhostResults& results) {
-  Json json = {{"vantage", kVersion},           {"experiment", "ghosts"},
-               {"data", results.data.string()}, {"threads", results.threads},
-               {"seconds", results.seconds},    {"skipped", results.skipped}};
-  RecordOptions(BackgroundOptions(), json["defaults"]["background"]);
-  json["sequences"] = Json::array();
-  for (const GhostCaseResult& in : results.cases) {
-    Json one = {{"name", in.used.name},
-                {"folder", in.used.sequence.generic_string()},
-                {"begin", in.used.begin},
-                {"first", in.runs.front().frames.front().frame},
-                {"last", in.runs.front().frames.back().frame},
-                {"frames", in.runs.front().counts.frames},
-                {"ghost", in.used.ghost},
-                {"check", JsonOf(in.used.check)},
-                {"notes", in.notes},
-                {"runs", Json::array()}};
-    for (std::size_t i = 0; i < in.runs.size(); ++i) {
-      one["runs"].push_back(RunJson(in, results.variants[i], in.runs[i]));
-    }
-    json["sequences"].push_back(std::move(one));
-  }
-  return json;
-}
-
-Status WriteGhostReport(const GhostResults& results, const std::filesystem::path& folder) {
-  // A path may hold bytes that are no UTF-8.
-  const std::string json =
-      GhostJson(results).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  VANTAGE_RETURN_IF_ERROR(WriteTextFile(folder / "ghosts.csv", GhostCsv(results)));
-  VANTAGE_RETURN_IF_ERROR(WriteTextFile(folder / "ghosts_frames.csv", GhostFramesCsv(results)));
-  VANTAGE_RETURN_IF_ERROR(WriteTextFile(folder / "ghosts.json", json));
-  return WriteTextFile(folder / "ghosts.html", GhostPage(results));
 }
 
 }  // namespace vantage

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
-#include "vantage/base/result.h"
+#include "vantage/experiments/experiment.h"
 #include "vantage/experiments/ghost_experiment.h"
+#include "vantage/experiments/report_page.h"
 
 /// What is written of a ghost experiment (FORMATS.md). Nothing here fails on results without runs
 /// of some variants: their cells stay empty.
@@ -21,14 +21,15 @@ std::string GhostCsv(const GhostResults& results);
 /// none, fep-plain and the default, at the default colour and rate, for each alpha.
 std::string GhostFramesCsv(const GhostResults& results);
 
-/// ghosts.json: version, defaults, what was skipped, and every run's figures.
-nlohmann::ordered_json GhostJson(const GhostResults& results);
+/// The thesis's figure 8, 9, 10 or 11: bars of recall, precision and F1, means over the figure's
+/// cases, for each rule, and their table; real and simulated data apart but for figure 11. The bars
+/// go to `figures`, too.
+void AddGhostFigure(const GhostResults& results, int figure, ReportPage& page,
+                    std::vector<Figure>& figures);
 
-/// ghosts.html: the page with plots and tables.
-std::string GhostPage(const GhostResults& results);
-
-/// The four files into `folder`, which exists.
-Status WriteGhostReport(const GhostResults& results, const std::filesystem::path& folder);
+/// All else: ours beside OpenCV's methods, what the default does, each case with its lines and
+/// tables, the time, the options.
+void AddGhostDetails(const GhostResults& results, ReportPage& page);
 
 /// Names of what a variant does, empty where it does not apply: OpenCV's methods have no colour
 /// space, "none" has no threshold.
