@@ -25,9 +25,8 @@ Result<TrackMeasures> Measure(const simulation::RecordOptions& options) {
   VANTAGE_ASSIGN_OR_RETURN(const Scene scene, LoadScene(folder / "scene.toml"));
   VANTAGE_ASSIGN_OR_RETURN(const TrackingResult tracked, TrackPeople(scene, {}, threads));
   VANTAGE_ASSIGN_OR_RETURN(const Tracks truth, ReadTracks(folder / "truth" / "tracks.csv"));
-  VANTAGE_ASSIGN_OR_RETURN(
-      const TrackMeasures measures,
-      EvaluateTracks(truth, tracked.tracks, {}, &scene.area));
+  VANTAGE_ASSIGN_OR_RETURN(const TrackMeasures measures,
+                           EvaluateTracks(truth, tracked.tracks, {}, &scene.area));
   fmt::print("{}: MOTA {:.4f} MOTP {:.3f} FN {} FP {} IDSW {} of {}\n", options.preset,
              measures.mota, measures.motp, measures.misses, measures.false_positives,
              measures.switches, measures.truth_positions);
@@ -36,18 +35,15 @@ Result<TrackMeasures> Measure(const simulation::RecordOptions& options) {
 
 TEST(Simulated, SmallFloorball) {
   const auto measures = Measure({.preset = "floorball",
-                                 .stage = {.frames = 120, .cameras = 3, .scale = 0.4, .people = {}},
-                                 .masks = false,
-                                 .faults = {}});
+                                 .stage = {.frames = 120, .cameras = 3, .scale = 0.4},
+                                 .masks = false});
   ASSERT_TRUE(measures) << MessageOf(measures);
   EXPECT_GT(measures->mota, 0.5);
 }
 
 TEST(Simulated, SmallCampus) {
-  const auto measures = Measure({.preset = "campus",
-                                 .stage = {.frames = 120, .cameras = 3, .scale = 0.5, .people = {}},
-                                 .masks = false,
-                                 .faults = {}});
+  const auto measures = Measure(
+      {.preset = "campus", .stage = {.frames = 120, .cameras = 3, .scale = 0.5}, .masks = false});
   ASSERT_TRUE(measures) << MessageOf(measures);
   EXPECT_GT(measures->mota, 0.5);
 }

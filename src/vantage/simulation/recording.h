@@ -18,7 +18,7 @@ struct RecordOptions {
   std::string preset;
   PresetOptions stage;
   bool masks = true;  ///< whether the true masks are written
-  std::vector<CameraFault> faults;
+  std::vector<CameraFault> faults = {};
 };
 
 struct RecordReport {
