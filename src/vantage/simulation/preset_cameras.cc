@@ -17,7 +17,7 @@ Result<std::vector<StageCamera>> SetUpCameras(std::string_view preset,
   if (count < 1 || count > available) {
     return Fail("cameras is {}; {} has {}: ask for 1 to {}", count, preset, available, available);
   }
-  Dice dice(options.seed ^ 0x63616d65726173);
+  Dice dice(~options.seed);  // apart from what happens before them
   std::vector<StageCamera> cameras;
   for (int i = 0; i < count; ++i) {
     const NamedCamera& named = all[static_cast<std::size_t>(i)];
