@@ -9,8 +9,8 @@
 namespace vantage::simulation {
 
 /// The forecourt of an office, in metres from its middle, y away from the camera: the office's wall
-/// along y = 12 with a door at x = -2.4 (people vanish behind it), a bench before it, parking
-/// places with striped and paved ground, in front a tree and a sign that hide parts of people. Adds
+/// along y = 12.5 with a door at x = -2.4 (people vanish behind it), a bench before it, parking
+/// places, checks on the ground, and in front a tree and a sign that hide parts of people. Adds
 /// swaying trees and the lights' courses (cloud, and the lamp over the door that is switched on).
 void BuildForecourt(Stage& stage, Rehearsal& rehearsal, Dice& dice);
 
