@@ -74,11 +74,20 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
                                                  TextOf(event, scene.first_frame))});
     }
   }
-  rows.push_back({"reading", rate(maps.read_secs)});
-  rows.push_back({"background", rate(maps.background_secs)});
-  rows.push_back({"occupancy", rate(maps.occupancy_secs)});
+  // Stages that overlap: the time of all threads together.
+  const auto busy = [](double seconds) { return fmt::format("{:.2f} s of all threads", seconds); };
+  rows.push_back({"reading", busy(maps.read_secs)});
+  rows.push_back({"background", busy(maps.background_secs)});
+  rows.push_back({"occupancy", busy(maps.occupancy_secs)});
+  rows.push_back({"idle", busy(maps.idle_secs)});
+  if (maps.person.seconds > 0) {
+    rows.push_back({"first pass", fmt::format("{:.2f} s", maps.person.seconds)});
+  }
+  rows.push_back({"maps", rate(maps.wall_secs)});
   rows.push_back({"linking", rate(result.report.linking.linking.seconds)});
-  rows.push_back({"total", rate(result.report.total_secs)});
+  const double recorded_secs = static_cast<double>(maps.frames) / scene.frames_per_second;
+  rows.push_back({"total", fmt::format("{}, {:.2f} x real time", rate(result.report.total_secs),
+                                       recorded_secs / result.report.total_secs)});
   PrintTable(rows);
 }
 
