@@ -111,16 +111,23 @@ TEST(Table3, ReportsAllRowsBesideTheThesis) {
   EXPECT_GT(ValueOf(report, "extended area, continuous", "mota"), 0.8);
   const std::string csv = ReadTextFile(report.csv).value();
   EXPECT_THAT(csv, HasSubstr("table3,\"extended area, centre, truth at every 8th frame\",mota,"));
-  EXPECT_THAT(csv, HasSubstr(",0.7563,\"floorball-quick, simulated: 4 cameras, 288 x 230, 30 "
+  EXPECT_THAT(csv, HasSubstr(",0.7563,\"floorball-quick, simulated: 4 cameras, 480 x 384, 30 "
                              "frames\",1\n"));
   EXPECT_THAT(report.findings, SizeIs(4));
   pugi::xml_document document;
   EXPECT_TRUE(document.load_string(ReadTextFile(report.page).value().c_str()));
 
-  // On more threads nothing differs, and figure 16 needs no other masks.
+  // On more threads nothing differs, on the same recording: encoders give other bytes each time.
   DrawnStudy parallel;
   parallel.study.threads = 2;
-  EXPECT_EQ(ReadTextFile(parallel.Run(Table3Experiment()).csv).value(), csv);
+  for (const char* kept : {"data", "cells/data-floorball-quick.json", "reproduce.json"}) {
+    fs::create_directories((parallel.study.output / kept).parent_path());
+    fs::copy(drawn.study.output / kept, parallel.study.output / kept, fs::copy_options::recursive);
+  }
+  const StudyReport again = parallel.Run(Table3Experiment());
+  EXPECT_EQ(again.cells_computed, 9);
+  EXPECT_EQ(ReadTextFile(again.csv).value(), csv);
+  // And figure 16 needs no other masks.
   EXPECT_EQ(drawn.Run(Figure16Experiment()).cells_computed, 4);
 }
 

@@ -95,10 +95,10 @@ Result<TrackRecording> FloorballRecording(const Study& study) {
   options.preset = "floorball";
   options.stage.frames = study.quick ? 80 : 1000;
   options.stage.cameras = study.quick ? 4 : 8;
-  options.stage.scale = study.quick ? 0.3 : 1;
+  options.stage.scale = study.quick ? 0.5 : 1;
   VANTAGE_ASSIGN_OR_RETURN(TrackRecording recording,
                            Simulated(study, study.quick ? "floorball-quick" : "floorball", options,
-                                     study.quick ? "288 x 230" : "960 x 768"));
+                                     study.quick ? "480 x 384" : "960 x 768"));
   recording.sparse_truth = study.quick ? 8 : 40;
   return recording;
 }
@@ -108,7 +108,7 @@ Result<TrackRecording> CampusRecording(const Study& study) {
   options.preset = "campus";
   options.stage.frames = study.quick ? 60 : kPetsFrames;
   options.stage.cameras = study.quick ? 4 : 7;
-  options.stage.scale = study.quick ? 0.4 : 1;
+  options.stage.scale = study.quick ? 0.5 : 1;
   std::error_code code;
   const fs::path people = study.data / "pets2009" / kPetsTruth;
   const bool real_people = !study.data.empty() && fs::exists(people, code);
