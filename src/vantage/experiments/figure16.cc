@@ -90,8 +90,9 @@ Status Report(const Sweep& sweep, const CellResults& results, ReportPage& page,
            "m",
            sweep.recording.title, mota(used), sweep.sizes_m[used], mota(best), sweep.sizes_m[best],
            kWorthIt, sweep.sizes_m[largest]),
-       .verdict =
-           mota(used) >= mota(best) - 2 * kWorthIt ? Verdict::kHolds : Verdict::kDoesNotHold});
+       .verdict = !(mota(best) > 0)                         ? Verdict::kNotDecided
+                  : mota(used) >= mota(best) - 2 * kWorthIt ? Verdict::kHolds
+                                                            : Verdict::kDoesNotHold});
   return {};
 }
 
