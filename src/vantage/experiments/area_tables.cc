@@ -64,7 +64,7 @@ struct Part {
 
 Part PartOf(TrackRecording recording, bool has_pictures) {
   Part part{.recording = std::move(recording)};
-  const StageOptions defaults = OptionsWithoutHold();
+  const StageOptions defaults = OptionsWithoutHold(part.recording);
   const CellPtr masks =
       has_pictures ? MasksCell(part.recording, "defaults", defaults.background) : nullptr;
   for (const AreaRow& row : kRows) {

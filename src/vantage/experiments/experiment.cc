@@ -72,8 +72,9 @@ ReportPage PageOf(const Study& study, const StudyReport& report,
       kVersion));
   if (study.quick || study.frames) {
     page.Paragraph(
-        "This is a small version: short recordings, few cameras, small pictures. It shows that all "
-        "works; its figures and verdicts mean little.");
+        "This is a small version: short recordings, few cameras, small pictures, and clean-up of "
+        "masks that is reduced with them. It shows that all works; its figures and verdicts mean "
+        "little.");
   }
   if (!report.skipped.empty()) {
     page.Paragraph("Not run:");

@@ -60,7 +60,7 @@ Result<Json> RunStages(const TrackRecording& recording, const CellRun& run) {
     }
     return {};
   };
-  const StageOptions options;
+  const StageOptions options = DefaultsFor(recording);
   VANTAGE_ASSIGN_OR_RETURN(const TrackingResult tracked,
                            TrackPeople(scene, options, run.threads, run.control, sink));
   if (masks.empty()) return Fail("the recording ends before frame {}", shown);
@@ -83,7 +83,7 @@ Result<Json> RunStages(const TrackRecording& recording, const CellRun& run) {
 Result<ExperimentPlan> PlanFigure12(const Study& study) {
   ExperimentPlan plan;
   VANTAGE_ASSIGN_OR_RETURN(const TrackRecording recording, FloorballRecording(study));
-  Json inputs = InputsOf(recording, {.name = "", .options = {}}, false);
+  Json inputs = InputsOf(recording, {.name = "", .options = DefaultsFor(recording)}, false);
   inputs["frames"] = kFrames;
   const auto cell = std::make_shared<const Cell>(
       Cell{.name = "stages-" + recording.name,

@@ -100,7 +100,7 @@ Result<ExperimentPlan> Plan(const Study& study) {
   ExperimentPlan plan;
   VANTAGE_ASSIGN_OR_RETURN(TrackRecording recording, FloorballRecording(study));
   Sweep sweep{.recording = std::move(recording), .sizes_m = CellSizes(study)};
-  const StageOptions defaults = OptionsWithoutHold();
+  const StageOptions defaults = OptionsWithoutHold(sweep.recording);
   const CellPtr masks = MasksCell(sweep.recording, "defaults", defaults.background);
   for (const double cell_m : sweep.sizes_m) {
     sweep.cells.push_back(TrackCell(

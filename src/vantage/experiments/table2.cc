@@ -74,8 +74,8 @@ struct Part {
   std::vector<CellPtr> cells = {};
 };
 
-TrackSetting SettingOf(const BackgroundRow& row) {
-  TrackSetting setting{.name = row.name, .options = OptionsWithoutHold()};
+TrackSetting SettingOf(const TrackRecording& recording, const BackgroundRow& row) {
+  TrackSetting setting{.name = row.name, .options = OptionsWithoutHold(recording)};
   setting.options.background.mixture.rate = row.rate;
   setting.options.background.mixture.color = row.color;
   setting.options.background.ghosts.rule.criterion = row.criterion;
@@ -85,9 +85,10 @@ TrackSetting SettingOf(const BackgroundRow& row) {
 Part PartOf(TrackRecording recording, bool floorball) {
   Part part{.recording = std::move(recording), .floorball = floorball};
   for (const BackgroundRow& row : kRows) {
-    part.cells.push_back(TrackCell(part.recording, SettingOf(row)));
+    part.cells.push_back(TrackCell(part.recording, SettingOf(part.recording, row)));
   }
-  part.cells.push_back(TrackCell(part.recording, {.name = "defaults", .options = {}}));
+  part.cells.push_back(
+      TrackCell(part.recording, {.name = "defaults", .options = DefaultsFor(part.recording)}));
   return part;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/experiments/track_cell.h"
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -94,8 +95,22 @@ Result<Json> TrackAndMeasure(const TrackRecording& recording, const TrackSetting
 
 }  // namespace
 
-StageOptions OptionsWithoutHold() {
+StageOptions DefaultsFor(const TrackRecording& recording) {
   StageOptions options;
+  const double scale = recording.picture_scale;
+  const auto reduced = [](int& pixels, double factor) {
+    pixels = static_cast<int>(std::floor(pixels * factor));
+  };
+  CleanupOptions& cleanup = options.background.cleanup;
+  reduced(cleanup.open_px, scale);
+  reduced(cleanup.close_px, scale);
+  reduced(cleanup.min_area_px, scale * scale);
+  reduced(options.background.ghosts.min_area_px, scale * scale);
+  return options;
+}
+
+StageOptions OptionsWithoutHold(const TrackRecording& recording) {
+  StageOptions options = DefaultsFor(recording);
   options.hold.standing = false;
   return options;
 }

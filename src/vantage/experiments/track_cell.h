@@ -25,9 +25,13 @@ struct TrackSetting {
   std::optional<double> extension_m = std::nullopt;
 };
 
-/// The defaults, with nobody held (HoldOptions::standing): the thesis knows no way back from the
-/// tracks to the masks, and masks made once serve several settings.
-StageOptions OptionsWithoutHold();
+/// The defaults. On reduced pictures, lengths and areas that the background stage counts in pixels
+/// are reduced with them: people would be cleaned away.
+StageOptions DefaultsFor(const TrackRecording& recording);
+
+/// The same with nobody held (HoldOptions::standing): the thesis knows no way back from the tracks
+/// to the masks, and masks made once serve several settings.
+StageOptions OptionsWithoutHold(const TrackRecording& recording);
 
 /// Masks of all cameras of a recording, without the way back from the tracks, in masks/NAME-SETTING
 /// of the working folder, a folder a camera, without loss.

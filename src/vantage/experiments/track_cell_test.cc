@@ -56,7 +56,8 @@ double ValueOf(const StudyReport& report, const std::string& row, const std::str
 TEST(TrackCell, TracksTheDrawnPeople) {
   const DrawnStudy drawn;
   const TrackRecording recording = FloorballRecording(drawn.study).value();
-  const CellPtr cell = TrackCell(recording, {.name = "defaults", .options = {}});
+  const CellPtr cell =
+      TrackCell(recording, {.name = "defaults", .options = DefaultsFor(recording)});
   const CellsReport report = RunCells(drawn.study.output, {cell}, 1, false).value();
   const auto& result = report.results.at(cell->name);
   EXPECT_EQ(result["frames"], 30);
@@ -70,7 +71,7 @@ TEST(TrackCell, TracksTheDrawnPeople) {
 TEST(TrackCell, MasksMadeBeforeGiveTheSameTracks) {
   const DrawnStudy drawn;
   const TrackRecording recording = FloorballRecording(drawn.study).value();
-  const TrackSetting setting{.name = "without", .options = OptionsWithoutHold()};
+  const TrackSetting setting{.name = "without", .options = OptionsWithoutHold(recording)};
   const CellPtr whole = TrackCell(recording, setting);
   const CellPtr masks = MasksCell(recording, "defaults", setting.options.background);
   TrackSetting named = setting;
@@ -85,7 +86,7 @@ TEST(TrackCell, MasksMadeBeforeGiveTheSameTracks) {
 TEST(TrackCell, OptionsDecideWhatIsKept) {
   const DrawnStudy drawn;
   const TrackRecording recording = FloorballRecording(drawn.study).value();
-  TrackSetting setting{.name = "one", .options = OptionsWithoutHold()};
+  TrackSetting setting{.name = "one", .options = OptionsWithoutHold(recording)};
   const auto run = [&] {
     return RunCells(drawn.study.output, {TrackCell(recording, setting)}, 1, false)->computed;
   };

@@ -36,6 +36,7 @@ Result<TrackRecording> Simulated(const Study& study, const std::string& name,
   };
   recording.truth = fs::path("data") / name / "truth" / "tracks.csv";
   recording.frames = frames;
+  recording.picture_scale = options.stage.scale;
   return recording;
 }
 

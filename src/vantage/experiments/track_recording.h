@@ -28,6 +28,7 @@ struct TrackRecording {
   std::function<Result<Scene>(const std::filesystem::path& folder)> scene = {};
   std::filesystem::path truth = {};                 ///< relative to the working folder
   std::optional<FrameIndex> frames = std::nullopt;  ///< the first so many; none: all
+  double picture_scale = 1;  ///< sides of its pictures, of those of the full recording
   /// The thesis's truth of floorball is of every 40th frame: measured besides every frame.
   FrameIndex sparse_truth = 1;
 
