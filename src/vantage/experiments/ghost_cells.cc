@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Frames of a real sequence that count in a small version.
+/// Frames of a real sequence that count in a small version, and as many before them.
 constexpr std::int64_t kQuickFrames = 60;
 
 /// The variants of one rule: those with its name, which stand together.
@@ -41,6 +41,7 @@ Json InputsOf(const GhostCase& on, const Json& data, const RuleVariants& variant
                  {"begin", on.span.begin},
                  {"first", on.span.first},
                  {"last", on.span.last},
+                 {"lead", on.span.lead},
                  {"most", on.span.most},
                  {"variants", Json::array()}};
   for (const GhostVariant& variant : variants) {
@@ -73,7 +74,7 @@ Result<GhostPlan> PlanGhosts(const Study& study,
   for (GhostCase& one : StandardGhostCases()) {
     if (!wanted(one)) continue;
     // Simulated recordings are short of themselves then.
-    if (study.quick && !one.Simulated()) one.span.most = kQuickFrames;
+    if (study.quick && !one.Simulated()) one.span.lead = one.span.most = kQuickFrames;
     if (study.frames) one.span.most = std::min<std::int64_t>(one.span.most, *study.frames);
     const fs::path sequence = study.data / one.sequence;
     CellPtr recording;

@@ -25,6 +25,11 @@ FrameIndex LastOf(const FrameSpan& span) {
   return span.most > span.last - first ? span.last : first + span.most - 1;
 }
 
+/// The first frame that is seen when `first` is the first that counts.
+FrameIndex BeginOf(const FrameSpan& span, FrameIndex first) {
+  return std::max(span.begin, first - std::min<std::int64_t>(span.lead, first));
+}
+
 }  // namespace
 
 Result<LabelledSequence> LabelledSequence::OpenSequence(const fs::path& folder,
@@ -49,8 +54,8 @@ Result<LabelledSequence> LabelledSequence::OpenSequence(const fs::path& folder,
     return Fail("{}: the pictures have {} x {} px, the truth {} x {}", folder.string(), size.width,
                 size.height, truth.size.width, truth.size.height);
   }
-  VANTAGE_RETURN_IF_ERROR(opened.pictures_->Skip(span.begin));
-  opened.next_ = span.begin;
+  opened.next_ = BeginOf(span, masks.begin()->first);
+  VANTAGE_RETURN_IF_ERROR(opened.pictures_->Skip(opened.next_));
   opened.last_ = masks.rbegin()->first;
   opened.last_is_known_ = true;
   opened.roi_ = truth.roi;
@@ -82,9 +87,9 @@ Result<LabelledSequence> LabelledSequence::OpenRecording(const fs::path& folder,
     return Fail("{}: the pictures of {} have {} x {} px, the true masks {} x {}", folder.string(),
                 name, size.width, size.height, masks->info().size.width, masks->info().size.height);
   }
-  VANTAGE_RETURN_IF_ERROR(opened.pictures_->Skip(span.begin));
-  VANTAGE_RETURN_IF_ERROR(masks->Skip(span.begin));
-  opened.next_ = span.begin;
+  opened.next_ = BeginOf(span, std::max(span.first, span.begin));
+  VANTAGE_RETURN_IF_ERROR(opened.pictures_->Skip(opened.next_));
+  VANTAGE_RETURN_IF_ERROR(masks->Skip(opened.next_));
   opened.last_ = LastOf(span);
   opened.truth_ = [masks, span](FrameIndex frame) -> Result<cv::Mat> {
     cv::Mat labels;  // 0 and 255 mean the same in masks and labels

@@ -25,6 +25,8 @@ struct FrameSpan {
   /// First and last frame that count, of those from begin on that have truth, first <= last.
   FrameIndex first = 0;
   FrameIndex last = std::numeric_limits<FrameIndex>::max();
+  /// At most so many frames are seen before the first that counts, >= 0.
+  std::int64_t lead = std::numeric_limits<std::int64_t>::max();
   /// Frames that count end after so many, >= 1.
   std::int64_t most = std::numeric_limits<std::int64_t>::max();
 };

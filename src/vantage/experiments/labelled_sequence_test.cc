@@ -50,6 +50,10 @@ TEST(LabelledSequence, ChangeDetection) {
   EXPECT_THAT(seen.counted, ::testing::ElementsAre(30, 31, 32));
   EXPECT_EQ(seen.moving_px, 3 * GhostSequence::Box(30).area());
   EXPECT_EQ(seen.outside_px, 3 * 4 * GhostSequence::kWidth);  // the region of interest
+  const Seen late =
+      ReadAll(LabelledSequence::OpenSequence(folder / "one", {.lead = 4, .most = 3}).value());
+  EXPECT_THAT(late.shown, ::testing::ElementsAre(16, 17, 18, 19, 20, 21, 22));
+  EXPECT_THAT(late.counted, ::testing::ElementsAre(20, 21, 22));
   // The temporal range begins at frame 20.
   EXPECT_THAT(ReadAll(LabelledSequence::OpenSequence(folder / "one", {.most = 2}).value()).counted,
               ::testing::ElementsAre(20, 21));
