@@ -50,9 +50,13 @@ std::vector<GhostCase> SimulatedCases() {
        .preset = "ghosts",
        .figures = {8},
        .ghost = true,
-       .note =
-           "People and things that are there at the start, leave, come back, sit down; a parked "
-           "car that drives off."},
+       .under_mover = FrameWindow{290, 600},
+       .over_edges = FrameWindow{575, 740},
+       .hidden = FrameWindow{775, 1045},
+       .note = "People and things that are there at the start, leave, come back, sit down. A man "
+               "leaves at frame 250, and another creeps across his ghost until 600; a car that is "
+               "parked on hatched ground drives off from 500 on; somebody is behind a young tree "
+               "and a sign from 775 to 1125; the light changes slowly, and suddenly at 1050."},
       {.name = "floorball-a",
        .preset = "floorball",
        .camera = 0,

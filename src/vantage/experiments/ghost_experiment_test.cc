@@ -77,6 +77,12 @@ TEST(StandardGhosts, EveryVariantOnceAndValid) {
     EXPECT_TRUE(names.insert(one.name).second);
     EXPECT_LE(one.span.first, one.span.last);
     EXPECT_NE(one.preset.empty(), one.sequence.empty());
+    EXPECT_FALSE(one.figures.empty());
+    for (const auto& window : {one.under_mover, one.over_edges, one.hidden}) {
+      EXPECT_TRUE(!window || window->first < window->last) << one.name;
+    }
+    // The simulated forecourt was built with all of the thesis's weak spots.
+    EXPECT_EQ(one.name == "ghosts", one.under_mover && one.over_edges && one.hidden);
   }
 }
 
