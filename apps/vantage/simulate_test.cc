@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
-#include <set>
+#include <opencv2/core.hpp>
 
 #include "test_program.h"
 #include "vantage/base/file.h"
