@@ -37,12 +37,10 @@ struct RecordReport {
 ///   CAMERA.mp4                     H.264, one a camera
 ///   truth/tracks.csv               every person in every frame, inside the area or not, metres
 ///   truth/boxes/CAMERA.txt         MOTChallenge text: around all of a person that is in the
-///   picture,
-///                                  whether hidden or not; columns 8 and 9 are x and y in metres
+///                                  picture, hidden or not; columns 8 and 9 are x and y, metres
 ///   truth/visibility.csv           frame,camera,id,pixels,visible_pixels: how much of each person
 ///                                  is in the picture, and how much of that is not hidden
-///   truth/masks/CAMERA/            masks of every frame: a lossless video, or PNG where a side is
-///                                  odd
+///   truth/masks/CAMERA/000000.png  masks of every frame, 0 and 255
 ///   simulation.json                preset, seed, options, version
 ///
 /// Truth is that of the scene's frames, also where a camera's faults deliver other pictures. For

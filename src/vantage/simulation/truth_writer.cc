@@ -38,12 +38,10 @@ Result<TruthWriter> TruthWriter::Create(const Stage& stage, bool masks, const fs
     writer.cameras_.push_back(camera.name);
     writer.boxes_.emplace_back(BoxesPath(folder, camera.name));
     if (!masks) continue;
-    const ImageSize size = camera.camera.size();
-    const bool even = size.width % 2 == 0 && size.height % 2 == 0;
-    VANTAGE_ASSIGN_OR_RETURN(MaskWriter mask_writer,
-                             MaskWriter::Create(folder / "masks" / camera.name,
-                                                even ? MaskFormat::kVideo : MaskFormat::kPng, size,
-                                                stage.frames_per_second, false));
+    VANTAGE_ASSIGN_OR_RETURN(
+        MaskWriter mask_writer,
+        MaskWriter::Create(folder / "masks" / camera.name, MaskFormat::kPng, camera.camera.size(),
+                           stage.frames_per_second, false));
     writer.masks_.push_back(std::move(mask_writer));
   }
   return writer;
