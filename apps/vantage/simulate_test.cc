@@ -42,8 +42,8 @@ int Count(const SourceSpec& source) {
 TEST(Simulate, WritesASceneAndItsTruth) {
   const TemporaryFolder folder;
   // Large enough that legs are seen: a pixel shows what is at its centre.
-  const Outcome outcome = Simulate(
-      folder / "out", "floorball --frames 6 --cameras 2 --scale 0.4 --quiet --json");
+  const Outcome outcome =
+      Simulate(folder / "out", "floorball --frames 6 --cameras 2 --scale 0.4 --quiet --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto report = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(report["frames"], 6);

@@ -133,7 +133,8 @@ Result<RecordReport> RecordScene(const RecordOptions& options, const fs::path& f
     deliveries.push_back(std::move(delivery));
   }
   control.Report(0, stage.frames);
-  VANTAGE_ASSIGN_OR_RETURN(Film film, Film::Create(stage, options.stage.seed, threads, control));
+  const RunControl setup{.progress = {}, .stop = control.stop};  // progress counts frames
+  VANTAGE_ASSIGN_OR_RETURN(Film film, Film::Create(stage, options.stage.seed, threads, setup));
 
   RecordReport report;
   std::vector<Status> statuses(stage.cameras.size());
