@@ -121,9 +121,17 @@ std::string ToSvg(const BarChart& chart) {
   });
   const double group_width = (kRight - kLeft) / static_cast<double>(chart.groups.size());
   const double bar_width = 0.84 * group_width / static_cast<double>(chart.series.size());
+  // Names that are wider than their groups stand on two lines by turns.
+  constexpr double kLetter_px = 6;
+  const bool crowded = std::ranges::any_of(chart.groups, [&](const std::string& name) {
+    return kLetter_px * static_cast<double>(name.size()) > group_width;
+  });
   for (std::size_t g = 0; g < chart.groups.size(); ++g) {
     const double left = kLeft + static_cast<double>(g) * group_width;
-    svg += Text(left + group_width / 2, kBottom + 15, "middle", chart.groups[g]);
+    const double below = crowded && g % 2 == 1 ? 29 : 15;
+    const double half_name = kLetter_px / 2 * static_cast<double>(chart.groups[g].size());
+    const double middle = std::min(left + group_width / 2, kWidth - half_name);
+    svg += Text(middle, kBottom + below, "middle", chart.groups[g]);
     for (std::size_t s = 0; s < chart.series.size(); ++s) {
       const double value = chart.series[s].values[g];
       if (!std::isfinite(value)) continue;
