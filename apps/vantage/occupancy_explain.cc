@@ -6,29 +6,10 @@
 
 #include "vantage/pipeline/ground.h"
 #include "vantage/rendering/occupancy_picture.h"
+#include "vantage/scene/frame_pictures.h"
 #include "vantage/video/mask_writer.h"
-#include "vantage/video/multi_camera.h"
 
 namespace vantage::app {
-namespace {
-
-/// The pictures of all cameras at one frame; empty where a camera has none.
-Result<std::vector<cv::Mat>> PicturesAt(const Scene& scene, FrameIndex frame, int threads) {
-  std::vector<SyncedSource> sources;
-  for (const SceneCamera& camera : scene.cameras) {
-    VANTAGE_ASSIGN_OR_RETURN(auto source, OpenSource(camera.source));
-    sources.push_back({std::move(source), camera.source.offset_frames});
-  }
-  VANTAGE_ASSIGN_OR_RETURN(MultiCameraReader reader,
-                           MultiCameraReader::Create(std::move(sources), frame));
-  std::vector<cv::Mat> pictures;
-  VANTAGE_RETURN_IF_ERROR(reader.Read(pictures, threads));
-  pictures.resize(scene.cameras.size());
-  return pictures;
-}
-
-}  // namespace
-
 Result<Explanation> Explanation::Create(const Scene& scene, const std::filesystem::path& folder,
                                         FrameIndex frame) {
   if (frame < scene.first_frame ||
@@ -59,7 +40,8 @@ Status Explanation::Finish(const SceneSetup& setup, const MapsResult& result, in
   }
   const PersonOptions& person = result.report.person.used;
   VANTAGE_ASSIGN_OR_RETURN(Ground ground, LayOutGround(scene, person, setup.options.occupancy));
-  VANTAGE_ASSIGN_OR_RETURN(const std::vector<cv::Mat> pictures, PicturesAt(scene, frame_, threads));
+  VANTAGE_ASSIGN_OR_RETURN(const std::vector<cv::Mat> pictures,
+                           FramePictures(scene, frame_, threads));
   const std::span<const float> q = result.maps.Frame(frame_ - scene.first_frame);
   VANTAGE_ASSIGN_OR_RETURN(peaks_, FindPeaks(ground.grid, q, {}));
 

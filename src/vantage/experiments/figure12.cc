@@ -6,7 +6,6 @@
 #include <array>
 #include <utility>
 
-#include "vantage/experiments/frame_pictures.h"
 #include "vantage/experiments/picture_uri.h"
 #include "vantage/experiments/track_cell.h"
 #include "vantage/occupancy/peaks.h"
@@ -14,6 +13,7 @@
 #include "vantage/rendering/occupancy_picture.h"
 #include "vantage/rendering/overlay.h"
 #include "vantage/rendering/people.h"
+#include "vantage/scene/frame_pictures.h"
 
 namespace vantage {
 namespace {

@@ -7,12 +7,12 @@
 #include <limits>
 #include <utility>
 
-#include "vantage/experiments/frame_pictures.h"
 #include "vantage/experiments/picture_uri.h"
 #include "vantage/experiments/track_cell.h"
 #include "vantage/pipeline/ground.h"
 #include "vantage/rendering/occupancy_picture.h"
 #include "vantage/rendering/overlay.h"
+#include "vantage/scene/frame_pictures.h"
 
 namespace vantage {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Vantage authors
 // SPDX-License-Identifier: MIT
-#include "vantage/experiments/frame_pictures.h"
+#include "vantage/scene/frame_pictures.h"
 
 #include <utility>
 
