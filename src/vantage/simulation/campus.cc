@@ -7,7 +7,6 @@
 #include "vantage/simulation/campus_world.h"
 #include "vantage/simulation/preset_cameras.h"
 #include "vantage/simulation/things.h"
-#include "vantage/simulation/wardrobe.h"
 #include "vantage/tracks/track_file.h"
 
 namespace vantage::simulation {
@@ -23,15 +22,10 @@ const Vector2d kAreaMax = {4.9813, 1.7335};
 /// Longer holes in somebody's real track are filled by going away and coming back.
 constexpr double kMaxGapSecs = 3;
 
-struct Walker {
-  int id = 0;
-  Walk walk;
-};
-
 /// The people of a truth file, each from gate to gate.
-Result<std::vector<Walker>> RealPeople(const std::filesystem::path& path, FrameIndex frames) {
+Result<std::vector<NumberedWalk>> RealPeople(const std::filesystem::path& path, FrameIndex frames) {
   VANTAGE_ASSIGN_OR_RETURN(const Tracks tracks, ReadTracks(path));
-  std::vector<Walker> people;
+  std::vector<NumberedWalk> people;
   for (const Track& track : tracks) {
     const auto id = static_cast<std::int64_t>(track.id);
     if (id < 1 || id >= kFirstThingId) {
@@ -72,7 +66,7 @@ Vector2d PlaceInArea(const std::vector<Pillar>& pillars, Dice& dice) {
 
 /// People alone and in groups who cross the area, some of whom stop and talk: about as many at a
 /// time, and about as long, as in the recording.
-std::vector<Walker> InventedPeople(FrameIndex frames, Dice& dice) {
+std::vector<NumberedWalk> InventedPeople(FrameIndex frames, Dice& dice) {
   const std::vector<Gate> gates = CampusGates();
   const std::vector<Pillar> pillars = CampusPillars();
   const double seconds = static_cast<double>(frames) / kFramesPerSecond;
@@ -107,7 +101,7 @@ std::vector<Walker> InventedPeople(FrameIndex frames, Dice& dice) {
     }
     enters += members * dice.Uniform(6.5, 8.5);  // the larger the group, the longer until the next
   }
-  std::vector<Walker> walkers;
+  std::vector<NumberedWalk> walkers;
   for (Walk& walk : Stroll(people, pillars, kFramesPerSecond, frames)) {
     if (walk.ground_m.empty()) continue;  // gone before the film begins
     walkers.push_back({static_cast<int>(walkers.size()) + 1, std::move(walk)});
@@ -128,17 +122,13 @@ Result<Stage> MakeCampus(const PresetOptions& options) {
   Rehearsal rehearsal;
   rehearsal.frames_per_second = kFramesPerSecond;
   BuildCampus(stage, rehearsal, static_cast<double>(stage.frames) / kFramesPerSecond, dice);
-  std::vector<Walker> people;
+  std::vector<NumberedWalk> people;
   if (options.people.empty()) {
     people = InventedPeople(stage.frames, dice);
   } else {
     VANTAGE_ASSIGN_OR_RETURN(people, RealPeople(options.people, stage.frames));
   }
-  for (const Walker& walker : people) {
-    const Figure figure = DressUp(stage.materials, dice);
-    rehearsal.actors.push_back({walker.id, figure, walker.walk.first,
-                                Postures(walker.walk, kFramesPerSecond, figure.height_m)});
-  }
+  AddWalkers(stage, rehearsal, people, dice);
   stage.script = MakePlay(std::move(rehearsal));
   return stage;
 }

@@ -7,7 +7,7 @@
 #include "vantage/simulation/crowd_people.h"
 #include "vantage/simulation/crowd_world.h"
 #include "vantage/simulation/preset_cameras.h"
-#include "vantage/simulation/wardrobe.h"
+#include "vantage/simulation/things.h"
 
 namespace vantage::simulation {
 namespace {
@@ -26,11 +26,6 @@ constexpr double kMaxGapSecs = 2.05;
 constexpr double kFastest = 7;  // m/s
 constexpr int kFirstRestId = 10001;
 
-struct Walker {
-  int id = 0;
-  Walk walk;
-};
-
 /// Parts in which nobody leaps.
 std::vector<std::vector<Waypoint>> WithoutLeaps(const std::vector<Waypoint>& known) {
   std::vector<std::vector<Waypoint>> parts;
@@ -46,9 +41,10 @@ std::vector<std::vector<Waypoint>> WithoutLeaps(const std::vector<Waypoint>& kno
 
 /// The annotated people, each from door to door. What follows a leap is somebody else with an id
 /// of their own.
-Result<std::vector<Walker>> RealPeople(const std::filesystem::path& folder, FrameIndex frames) {
+Result<std::vector<NumberedWalk>> RealPeople(const std::filesystem::path& folder,
+                                             FrameIndex frames) {
   VANTAGE_ASSIGN_OR_RETURN(const auto ways, ReadCrowdPeople(folder));
-  std::vector<Walker> people;
+  std::vector<NumberedWalk> people;
   int rest_id = kFirstRestId;
   for (const auto& [id, known] : ways) {
     bool whole = true;
@@ -133,7 +129,7 @@ Result<Stage> MakeCrowd(const PresetOptions& options) {
   rehearsal.frames_per_second = kFramesPerSecond;
   const double seconds = static_cast<double>(stage.frames) / kFramesPerSecond;
   BuildSquare(stage, rehearsal, seconds, dice);
-  std::vector<Walker> people;
+  std::vector<NumberedWalk> people;
   if (options.people.empty()) {
     for (Walk& walk :
          Stroll(InventPeople(seconds, dice), SquarePillars(), kFramesPerSecond, stage.frames)) {
@@ -143,11 +139,7 @@ Result<Stage> MakeCrowd(const PresetOptions& options) {
   } else {
     VANTAGE_ASSIGN_OR_RETURN(people, RealPeople(options.people, stage.frames));
   }
-  for (const Walker& walker : people) {
-    const Figure figure = DressUp(stage.materials, dice);
-    rehearsal.actors.push_back({walker.id, figure, walker.walk.first,
-                                Postures(walker.walk, kFramesPerSecond, figure.height_m)});
-  }
+  AddWalkers(stage, rehearsal, people, dice);
   stage.script = MakePlay(std::move(rehearsal));
   return stage;
 }

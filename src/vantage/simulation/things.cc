@@ -31,4 +31,14 @@ void AddTrees(Stage& stage, Rehearsal& rehearsal, const std::vector<Eigen::Vecto
   }
 }
 
+void AddWalkers(Stage& stage, Rehearsal& rehearsal, const std::vector<NumberedWalk>& people,
+                Dice& dice) {
+  for (const NumberedWalk& person : people) {
+    const Figure figure = DressUp(stage.materials, dice);
+    rehearsal.actors.push_back(
+        {person.id, figure, person.walk.first,
+         Postures(person.walk, rehearsal.frames_per_second, figure.height_m)});
+  }
+}
+
 }  // namespace vantage::simulation

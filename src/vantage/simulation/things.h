@@ -7,6 +7,7 @@
 #include "vantage/simulation/dice.h"
 #include "vantage/simulation/play.h"
 #include "vantage/simulation/stage.h"
+#include "vantage/simulation/walkers.h"
 
 namespace vantage::simulation {
 
@@ -17,5 +18,14 @@ constexpr int kFirstThingId = 1000001;
 /// ids from kFirstThingId on.
 void AddTrees(Stage& stage, Rehearsal& rehearsal, const std::vector<Eigen::Vector2f>& places_m,
               double low_m, double high_m, int clusters, Dice& dice);
+
+struct NumberedWalk {
+  int id = 0;
+  Walk walk;
+};
+
+/// Adds people who walk so, in clothes as the dice want.
+void AddWalkers(Stage& stage, Rehearsal& rehearsal, const std::vector<NumberedWalk>& people,
+                Dice& dice);
 
 }  // namespace vantage::simulation
