@@ -26,8 +26,8 @@ struct RobustLength {
 };
 
 /// What a rectangle must be wider than a person because people do not stand at the centres of
-/// cells: 4 in 5 stand no farther to one side.
-inline double CellAllowance_m(double cell_m) { return 0.4 * cell_m; }
+/// cells: a quarter of a cell on either side, which is enough for half of them.
+inline double CellAllowance_m(double cell_m) { return 0.5 * cell_m; }
 
 /// How large people are in the masks of a recording.
 struct PersonSizeReport {
@@ -47,8 +47,7 @@ struct PersonSizeReport {
   /// value. To the usual width comes the larger of two allowances, for what sticks out of the
   /// rectangle is explained by a second person beside the first, and one that is too wide only
   /// costs a little evidence: 2.5 times the width's spread (19 in 20 people are no wider, of a
-  /// normal distribution), and 0.4 of a cell (4 in 5 people stand no farther to one side of a
-  /// cell's centre).
+  /// normal distribution), and CellAllowance_m.
   double RectangleWidth_m(double cell_m) const;
   /// Height of that rectangle; `height` must have a value. The usual height and 1.5 times its
   /// spread, for silhouettes lose feet and heads more often than they gain any.

@@ -223,7 +223,7 @@ TEST(PersonSize, IsWideEnoughForMostPeople) {
   ASSERT_TRUE(report.width);
   EXPECT_NEAR(report.width->value_m, 0.6, 0.06);
   EXPECT_NEAR(report.RectangleWidth_m(0.1), 0.7, 0.07);
-  EXPECT_NEAR(report.RectangleWidth_m(2), report.width->value_m + 0.8, 1e-12);
+  EXPECT_NEAR(report.RectangleWidth_m(2), report.width->value_m + 1.0, 1e-12);
 }
 
 TEST(PersonSize, RefusesMasksOfAnotherKind) {
