@@ -38,7 +38,8 @@ nlohmann::ordered_json JsonOf(const DisturbanceEvent& event) {
 nlohmann::ordered_json JsonOf(const BackgroundReport& report) {
   nlohmann::ordered_json events = nlohmann::ordered_json::array();
   for (const DisturbanceEvent& event : report.disturbances.events) events.push_back(JsonOf(event));
-  return {{"frames", report.frames},
+  return {{"rehearsed_frames", report.rehearsed},
+          {"frames", report.frames},
           {"ghost_frames", report.ghost_frames},
           {"ghosts_px", report.ghosts_px},
           {"shadows_px", report.shadows_px},

@@ -12,6 +12,7 @@ namespace vantage {
 
 /// What the background stage of one camera did so far.
 struct BackgroundReport {
+  std::int64_t rehearsed = 0;  ///< frames learnt ahead of the first
   std::int64_t frames = 0;
   std::int64_t ghost_frames = 0;  ///< frames in which ghosts were absorbed
   std::int64_t ghosts_px = 0;     ///< their pixels

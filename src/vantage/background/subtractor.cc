@@ -26,6 +26,7 @@ void VisitOptions(BackgroundOptions& options, OptionVisitor& visitor) {
   VisitOptions(options.shadows, visitor);
   VisitOptions(options.ghosts, visitor);
   VisitOptions(options.cleanup, visitor);
+  VisitOptions(options.rehearsal, visitor);
 }
 
 Status Validate(const BackgroundOptions& options) {
@@ -130,6 +131,16 @@ Status BackgroundSubtractor::TakeGhosts(const cv::Mat& frame, cv::Mat& mask, con
   ++report_.ghost_frames;
   report_.ghosts_px += verdict_.ghosts_px;
   return {};
+}
+
+Status BackgroundSubtractor::Rehearse(const cv::Mat& bgr, cv::Mat& mask, int threads) {
+  VANTAGE_RETURN_IF_ERROR(CheckFrame(bgr, {}));
+  const cv::Mat frame = bgr;  // NOLINT(performance-unnecessary-copy-initialization)
+  VANTAGE_RETURN_IF_ERROR(method_->Apply(frame, {}, mask, threads));
+  VANTAGE_RETURN_IF_ERROR(CheckMask(mask));
+  VANTAGE_RETURN_IF_ERROR(RejectShadows(frame, mask, PictureOf(*method_), options_.shadows));
+  ++report_.rehearsed;
+  return CleanMask(mask, options_.cleanup);
 }
 
 Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int threads,

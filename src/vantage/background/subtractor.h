@@ -10,6 +10,7 @@
 #include "vantage/background/disturbance.h"
 #include "vantage/background/ghosts.h"
 #include "vantage/background/method.h"
+#include "vantage/background/rehearsal.h"
 #include "vantage/background/report.h"
 #include "vantage/background/shadows.h"
 #include "vantage/base/options.h"
@@ -25,6 +26,8 @@ struct BackgroundOptions {
   ShadowOptions shadows;
   GhostOptions ghosts;
   CleanupOptions cleanup;
+  /// Of whoever has the recording: subtractors do not read.
+  RehearsalOptions rehearsal;
 };
 void VisitOptions(BackgroundOptions& options, OptionVisitor& visitor);
 /// Fields one by one, then the rules that join two of them.
@@ -52,6 +55,11 @@ class BackgroundSubtractor {
   /// it neither fades into the background there nor is it taken for a ghost. Same bits for every
   /// thread count. Fails on matrices of another size or type.
   Status Apply(const cv::Mat& bgr, cv::Mat& mask, int threads, const cv::Mat& held = {});
+
+  /// Before the first Apply: learns one of the frames that a rehearsal samples. `mask` becomes what
+  /// is foreground so far, without shadows, cleaned up. Neither ghosts nor disturbances are looked
+  /// for: samples are far apart, and what is true of few of them does no harm. Otherwise as Apply.
+  Status Rehearse(const cv::Mat& bgr, cv::Mat& mask, int threads);
 
   const BackgroundMethod& method() const { return *method_; }
   const BackgroundReport& report() const { return report_; }

@@ -53,6 +53,16 @@ Result<bool> MultiCameraReader::ReadCamera(std::size_t camera, cv::Mat& frame) {
   return more;
 }
 
+Status MultiCameraReader::SkipCamera(std::size_t camera, std::int64_t count) {
+  const SyncedSource& synced = sources_[camera];
+  std::int64_t& next = next_frames_[camera];
+  // What lies before the source's first frame is not in the source.
+  const std::int64_t before = std::clamp<std::int64_t>(-(next + synced.offset_frames), 0, count);
+  next += count;
+  if (before < count) VANTAGE_RETURN_IF_ERROR(synced.source->Skip(count - before));
+  return {};
+}
+
 Result<bool> MultiCameraReader::Read(std::vector<cv::Mat>& frames, int threads) {
   if (ended_) return false;
   frames.resize(sources_.size());

@@ -44,6 +44,9 @@ class MultiCameraReader {
   /// its own pace. False at the end of its source. A reader is used either in step or like this.
   Result<bool> ReadCamera(std::size_t camera, cv::Mat& frame);
 
+  /// Moves one camera on by `count` frames, as ReadCamera would; fewer when its source ends.
+  Status SkipCamera(std::size_t camera, std::int64_t count);
+
   /// Frames from the start to the end of the shortest source; none when no source knows its count.
   std::optional<std::int64_t> frame_count() const;
 

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/background/rehearsal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vantage {
+namespace {
+
+constexpr double kMostSecs = 86400;
+constexpr int kMostFrames = 100000;
+
+}  // namespace
+
+void VisitOptions(RehearsalOptions& options, OptionVisitor& visitor) {
+  visitor.Number({"rehearsal_secs", "s",
+                  "the background is learnt from frames sampled over so much of the beginning "
+                  "before the first frame is judged; 0: not"},
+                 options.rehearsal_secs, Range::Between(0, kMostSecs));
+  visitor.Number({"rehearsal_frames", "frames", "how many are sampled there, at most"},
+                 options.rehearsal_frames, Range::Between(1, kMostFrames));
+}
+
+RehearsalPlan PlanRehearsal(const RehearsalOptions& options,
+                            std::optional<std::int64_t> frame_count, double frames_per_second) {
+  std::int64_t frames = std::llround(options.rehearsal_secs * frames_per_second);
+  if (frame_count) frames = std::min(frames, *frame_count);
+  if (frames <= 0) return {};
+  RehearsalPlan plan;
+  plan.interval = (frames + options.rehearsal_frames - 1) / options.rehearsal_frames;
+  plan.samples = (frames + plan.interval - 1) / plan.interval;
+  return plan;
+}
+
+}  // namespace vantage
