@@ -92,7 +92,7 @@ void Track(benchmark::State& state, bool sized) {
     secs += report.total_secs;
     // Shares of the threads' time.
     const double all_secs = report.total_secs * threads;
-    state.counters["person"] = maps.person.seconds * threads / all_secs;
+    state.counters["rehearsal"] = maps.rehearsal_secs * threads / all_secs;
     state.counters["read"] = maps.read_secs / all_secs;
     state.counters["background"] = maps.background_secs / all_secs;
     state.counters["occupancy"] = maps.occupancy_secs / all_secs;

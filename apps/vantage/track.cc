@@ -80,8 +80,8 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
   rows.push_back({"background", busy(maps.background_secs)});
   rows.push_back({"occupancy", busy(maps.occupancy_secs)});
   rows.push_back({"idle", busy(maps.idle_secs)});
-  if (maps.person.seconds > 0) {
-    rows.push_back({"first pass", fmt::format("{:.2f} s", maps.person.seconds)});
+  if (maps.rehearsal_secs > 0) {
+    rows.push_back({"rehearsal", fmt::format("{:.2f} s", maps.rehearsal_secs)});
   }
   rows.push_back({"maps", rate(maps.wall_secs)});
   rows.push_back({"linking", rate(result.report.linking.linking.seconds)});

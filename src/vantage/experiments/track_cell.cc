@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "vantage/pipeline/flow.h"
-#include "vantage/pipeline/mask_stream.h"
+#include "vantage/pipeline/rehearsal.h"
 #include "vantage/video/mask_writer.h"
 
 namespace vantage {
@@ -27,7 +27,8 @@ Json Recorded(const Options& options) {
 Result<Json> WriteMasks(const TrackRecording& recording, const BackgroundOptions& background,
                         const CellRun& run) {
   VANTAGE_ASSIGN_OR_RETURN(const Scene scene, recording.scene(run.folder));
-  VANTAGE_ASSIGN_OR_RETURN(MaskStream stream, MaskStream::Create(scene, background, run.threads));
+  VANTAGE_ASSIGN_OR_RETURN(Rehearsed rehearsed, Rehearse(scene, background, run.threads));
+  MaskStream& stream = rehearsed.stream;
   std::vector<MaskWriter> writers;
   for (const SceneCamera& camera : scene.cameras) {
     const ImageSize size = camera.camera.size();
@@ -59,7 +60,7 @@ Result<Json> WriteMasks(const TrackRecording& recording, const BackgroundOptions
 }
 
 Json SecondsOf(const TrackingReport& report) {
-  return {{"person", report.maps.person.seconds},
+  return {{"rehearsal", report.maps.rehearsal_secs},
           {"read", report.maps.read_secs},
           {"background", report.maps.background_secs},
           {"occupancy", report.maps.occupancy_secs},

@@ -7,10 +7,11 @@
 
 namespace vantage {
 
-Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOptions& options,
-                                      int threads) {
+namespace {
+
+/// All sources of a scene at its first frame.
+Result<MultiCameraReader> OpenCameras(const Scene& scene) {
   std::vector<SyncedSource> inputs;
-  std::vector<std::optional<BackgroundSubtractor>> subtractors;
   for (const SceneCamera& camera : scene.cameras) {
     auto source = OpenSource(camera.source);
     if (!source) return Fail("camera {}: {}", camera.name, source.error().message);
@@ -22,18 +23,18 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
           camera.name, info.name, info.size.width, info.size.height, camera.camera.size().width,
           camera.camera.size().height);
     }
-    subtractors.emplace_back();
-    if (info.content == FrameContent::kColor) {
-      VANTAGE_ASSIGN_OR_RETURN(
-          subtractors.back(),
-          BackgroundSubtractor::Create(info.size, options, scene.frames_per_second));
-    }
     inputs.push_back({.source = std::move(*source), .offset_frames = camera.source.offset_frames});
   }
-  VANTAGE_ASSIGN_OR_RETURN(MultiCameraReader reader,
-                           MultiCameraReader::Create(std::move(inputs), scene.first_frame));
+  return MultiCameraReader::Create(std::move(inputs), scene.first_frame);
+}
+
+}  // namespace
+
+Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOptions& options,
+                                      int threads) {
+  VANTAGE_ASSIGN_OR_RETURN(MultiCameraReader reader, OpenCameras(scene));
   MaskStream stream(std::move(reader));
-  stream.subtractors_ = std::move(subtractors);
+  VANTAGE_RETURN_IF_ERROR(stream.MakeSubtractors(scene, options));
   stream.frame_count_ = stream.reader_.frame_count();
   if (scene.frame_count) {
     stream.frame_count_ =
@@ -44,9 +45,35 @@ Result<MaskStream> MaskStream::Create(const Scene& scene, const BackgroundOption
   return stream;
 }
 
+Status MaskStream::MakeSubtractors(const Scene& scene, const BackgroundOptions& options) {
+  subtractors_.clear();
+  for (const SourceInfo& info : reader_.infos()) {
+    subtractors_.emplace_back();
+    if (info.content != FrameContent::kColor) continue;
+    VANTAGE_ASSIGN_OR_RETURN(subtractors_.back(), BackgroundSubtractor::Create(
+                                                      info.size, options, scene.frames_per_second));
+  }
+  return {};
+}
+
+Status MaskStream::Rewind(const Scene& scene, const BackgroundOptions& options, bool keep_learnt) {
+  VANTAGE_ASSIGN_OR_RETURN(reader_, OpenCameras(scene));
+  return keep_learnt ? Status() : MakeSubtractors(scene, options);
+}
+
 Result<bool> MaskStream::Read(int camera, std::int64_t frame, cv::Mat& picture) {
   if (frame == limit_) return false;
   return reader_.ReadCamera(static_cast<std::size_t>(camera), picture);
+}
+
+Status MaskStream::Skip(int camera, std::int64_t count) {
+  return reader_.SkipCamera(static_cast<std::size_t>(camera), count);
+}
+
+Status MaskStream::Rehearse(int camera, const cv::Mat& picture, cv::Mat& mask) {
+  auto& subtractor = subtractors_[static_cast<std::size_t>(camera)];
+  if (!subtractor || picture.empty()) return Subtract(camera, picture, {}, mask);
+  return subtractor->Rehearse(picture, mask, row_threads_);
 }
 
 Status MaskStream::Subtract(int camera, const cv::Mat& picture, const cv::Mat& held,

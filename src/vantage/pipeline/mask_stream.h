@@ -34,10 +34,21 @@ class MaskStream {
   /// frame that the scene asks for. Different cameras may be read at the same time.
   Result<bool> Read(int camera, std::int64_t frame, cv::Mat& picture);
 
+  /// Leaves out the next `count` frames of a camera.
+  Status Skip(int camera, std::int64_t count);
+
   /// Its mask, CV_8UC1; empty for an empty picture. To be called for the frames in order.
   /// `held` is where objects are known to stand, or empty (BackgroundSubtractor::Apply). Different
   /// cameras may be asked at the same time.
   Status Subtract(int camera, const cv::Mat& picture, const cv::Mat& held, cv::Mat& mask);
+
+  /// What a rehearsal makes of a picture (BackgroundSubtractor::Rehearse): the camera learns it.
+  /// Masks and boxes pass as they are.
+  Status Rehearse(int camera, const cv::Mat& picture, cv::Mat& mask);
+
+  /// Back to the first frame: the sources are opened once more. What the cameras have learnt stays
+  /// with them if `keep_learnt`; otherwise they have learnt nothing.
+  Status Rewind(const Scene& scene, const BackgroundOptions& options, bool keep_learnt);
 
   const std::vector<std::optional<BackgroundSubtractor>>& subtractors() const {
     return subtractors_;
@@ -45,6 +56,7 @@ class MaskStream {
 
  private:
   explicit MaskStream(MultiCameraReader reader) : reader_(std::move(reader)) {}
+  Status MakeSubtractors(const Scene& scene, const BackgroundOptions& options);
   MultiCameraReader reader_;
   std::vector<std::optional<BackgroundSubtractor>> subtractors_;  // none: delivers masks
   std::optional<std::int64_t> frame_count_;

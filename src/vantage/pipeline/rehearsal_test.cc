@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Vantage authors
 // SPDX-License-Identifier: MIT
-#include "vantage/pipeline/person.h"
+#include "vantage/pipeline/rehearsal.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,6 +49,11 @@ translation_m = [0.0, 0.0, 11.1803399]
 
   Scene Load() const { return LoadScene(folder_ / "scene.toml").value(); }
 
+  Result<PersonReport> Person(int threads = 1) const {
+    VANTAGE_ASSIGN_OR_RETURN(Rehearsed rehearsed, Rehearse(Load(), {}, threads));
+    return std::move(rehearsed.person);
+  }
+
   void Draw(int frames) const {
     const Scene scene = Load();
     std::filesystem::create_directories(folder_ / "south");
@@ -72,11 +77,11 @@ translation_m = [0.0, 0.0, 11.1803399]
 TEST_F(OneCamera, SizeIsFoundWhereTheSceneLeavesItOpen) {
   Draw(120);
   const Scene scene = Load();
-  const auto report = ResolvePerson(scene, {}, 1);
+  const auto report = Person();
   ASSERT_TRUE(report) << MessageOf(report);
   EXPECT_TRUE(report->found);
   // The drawn width and the allowance for cells of 0.5 m, which is larger than that for the spread.
-  EXPECT_NEAR(report->used.width_m, 0.62 + 0.2, 0.04);
+  EXPECT_NEAR(report->used.width_m, 0.62 + 0.25, 0.04);
   EXPECT_NEAR(report->used.height_m, 1.6, 0.05);
   EXPECT_EQ(report->used.shape, PersonOptions().shape);
   ASSERT_TRUE(report->measured);
@@ -87,45 +92,39 @@ TEST_F(OneCamera, SizeIsFoundWhereTheSceneLeavesItOpen) {
   EXPECT_EQ(json["width_source"], "measured");
   EXPECT_EQ(json["measured"]["cameras"]["south"]["counted"], 60);
   // Threads do not matter.
-  const auto parallel = ResolvePerson(scene, {}, 3);
+  const auto parallel = Person(3);
   ASSERT_TRUE(parallel);
   EXPECT_EQ(parallel->used.width_m, report->used.width_m);
   EXPECT_EQ(parallel->used.height_m, report->used.height_m);
 }
 
-TEST_F(OneCamera, NoMoreIsReadThanNeeded) {
-  Draw(120);
-  const auto report = ResolvePerson(
-      Load(), {}, 1, {}, {.interval_secs = 0.25, .least_secs = 10, .enough = 50, .most_secs = 60});
-  ASSERT_TRUE(report && report->measured);
-  EXPECT_EQ(report->measured->frames, 50);
-  const auto shortest = ResolvePerson(
-      Load(), {}, 1, {}, {.interval_secs = 0.25, .least_secs = 15, .enough = 50, .most_secs = 60});
-  EXPECT_EQ(shortest.value().measured->frames, 61);  // 15 s, both ends
-  const auto longest =
-      ResolvePerson(Load(), {}, 1, {},
-                    {.interval_secs = 0.25, .least_secs = 10, .enough = 1000, .most_secs = 20});
-  EXPECT_EQ(longest.value().measured->frames, 80);
-  const auto plenty = ResolvePerson(
-      Load(), {}, 1, {},
-      {.interval_secs = 0.25, .least_secs = 15, .enough = 50, .most_secs = 60, .plenty = 55});
-  EXPECT_EQ(plenty.value().measured->frames, 55);
+TEST_F(OneCamera, TheBeginningIsSampled) {
+  Draw(300);  // 75 s
+  const auto report = Person();
+  ASSERT_TRUE(report) << MessageOf(report);
+  EXPECT_EQ(report->measured->frames, 80);  // of 60 s every third
+  Scene scene = Load();
+  scene.frame_count = 90;
+  const auto shortened = Rehearse(scene, {}, 1);
+  ASSERT_TRUE(shortened) << MessageOf(shortened);
+  EXPECT_EQ(shortened->person.measured->frames, 90);
 }
 
 TEST_F(OneCamera, GivenLengthsArePreferred) {
   Write("[person]\nheight = 2.0\n");
   Draw(120);
   const Scene scene = Load();
-  const auto report = ResolvePerson(scene, {}, 1);
+  const auto report = Person();
   ASSERT_TRUE(report) << MessageOf(report);
-  EXPECT_NEAR(report->used.width_m, 0.62 + 0.2, 0.04);
+  EXPECT_NEAR(report->used.width_m, 0.62 + 0.25, 0.04);
   EXPECT_EQ(report->used.height_m, 2.0);
   EXPECT_EQ(JsonOf(*report, scene)["height_source"], "given");
 }
 
-TEST_F(OneCamera, NothingIsReadWhenBothAreGiven) {
-  Write("[person]\nwidth = 0.7\nheight = 2.0\n");  // there are no masks
-  const auto report = ResolvePerson(Load(), {}, 1);
+TEST_F(OneCamera, NothingIsMeasuredWhenBothAreGiven) {
+  Write("[person]\nwidth = 0.7\nheight = 2.0\n");
+  Draw(20);
+  const auto report = Person();
   ASSERT_TRUE(report) << MessageOf(report);
   EXPECT_EQ(report->used.width_m, 0.7);
   EXPECT_FALSE(report->measured);
@@ -137,20 +136,71 @@ TEST_F(OneCamera, TooFewFiguresGiveTheDefaultAndSaySo) {
   Write("[person]\nwidth = \"auto\"\nheight = \"auto\"\n");
   Draw(20);
   const Scene scene = Load();
-  const auto report = ResolvePerson(scene, {}, 1);
+  const auto report = Person();
   ASSERT_TRUE(report) << MessageOf(report);
   EXPECT_FALSE(report->found);
   EXPECT_EQ(report->used.width_m, PersonOptions().width_m + CellAllowance_m(0.5));
   EXPECT_EQ(report->used.height_m, PersonOptions().height_m);
-  EXPECT_THAT(TextOf(*report), HasSubstr("default: 10 figures"));
+  EXPECT_THAT(TextOf(*report), HasSubstr("default: 20 figures"));
   EXPECT_EQ(JsonOf(*report, scene)["width_source"], "default");
 }
 
+/// The same camera delivers pictures; somebody stands in the middle at first.
+class ColorCamera : public OneCamera {
+ protected:
+  static constexpr int kFrames = 40;
+  static constexpr int kStays = 12;
+
+  ColorCamera() {
+    std::filesystem::create_directories(folder_ / "south");
+    for (int frame = 0; frame < kFrames; ++frame) {
+      cv::Mat picture(480, 640, CV_8UC3, cv::Scalar(90, 90, 90));
+      if (frame < kStays) picture(kSomebody) = cv::Scalar(20, 20, 200);
+      picture(cv::Rect(0, 0, 8, 8)) = cv::Scalar::all(frame);  // which frame it is
+      cv::imwrite((folder_ / fmt::format("south/{:06d}.png", frame)).string(), picture);
+    }
+    std::string text = ReadTextFile(folder_ / "scene.toml").value();
+    text.replace(text.find("masks ="), 7, "pictures =");
+    EXPECT_TRUE(WriteTextFile(folder_ / "scene.toml", text));
+  }
+
+  /// The first frame that follows, and its mask.
+  static cv::Mat FirstMask(Rehearsed& rehearsed) {
+    cv::Mat picture, mask;
+    EXPECT_TRUE(rehearsed.stream.Read(0, 0, picture).value());
+    EXPECT_EQ(picture.at<cv::Vec3b>(0, 0)[0], 0) << "the recording begins again";
+    EXPECT_TRUE(rehearsed.stream.Subtract(0, picture, {}, mask));
+    return mask;
+  }
+
+  const cv::Rect kSomebody{300, 200, 40, 90};
+};
+
+TEST_F(ColorCamera, LearnsTheBackgroundAhead) {
+  for (const int threads : {1, 3}) {
+    auto rehearsed = Rehearse(Load(), {}, threads);
+    ASSERT_TRUE(rehearsed) << MessageOf(rehearsed);
+    EXPECT_EQ(rehearsed->stream.subtractors()[0]->report().rehearsed, kFrames);
+    EXPECT_EQ(rehearsed->person.measured->frames, kFrames - kFrames / 4);
+    EXPECT_NEAR(cv::countNonZero(FirstMask(*rehearsed)(kSomebody)), kSomebody.area(), 40);
+  }
+}
+
+TEST_F(ColorCamera, ForgetsWhatItLearntWithoutRehearsal) {
+  BackgroundOptions options;
+  options.rehearsal.rehearsal_secs = 0;
+  auto measured = Rehearse(Load(), options, 2);
+  ASSERT_TRUE(measured) << MessageOf(measured);
+  EXPECT_EQ(measured->stream.subtractors()[0]->report().rehearsed, 0);
+  EXPECT_EQ(measured->person.measured->frames, kFrames - kFrames / 4);
+  EXPECT_EQ(cv::countNonZero(FirstMask(*measured)), 0);
+}
+
 TEST_F(OneCamera, ErrorsOfTheSourcesAndCtrlCAreReported) {
-  EXPECT_THAT(MessageOf(ResolvePerson(Load(), {}, 1)), HasSubstr("camera south"));
+  EXPECT_THAT(MessageOf(Person()), HasSubstr("camera south"));
   Draw(3);
   const std::atomic<bool> stop{true};
-  EXPECT_THAT(MessageOf(ResolvePerson(Load(), {}, 1, {.progress = {}, .stop = &stop})),
+  EXPECT_THAT(MessageOf(Rehearse(Load(), {}, 1, {.progress = {}, .stop = &stop})),
               HasSubstr("interrupted"));
 }
 

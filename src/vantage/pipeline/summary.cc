@@ -111,7 +111,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   }
 
   Json& stages = json["stages"];
-  stages["person"] = Json{{"seconds", maps.person.seconds}};
+  stages["rehearsal"] = Json{{"seconds", maps.rehearsal_secs}};
   stages["read"] = StageJson(maps.read_secs, maps.frames);
   stages["background"] = StageJson(maps.background_secs, maps.frames);
   stages["occupancy"] = StageJson(maps.occupancy_secs, maps.frames);

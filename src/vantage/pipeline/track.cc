@@ -12,6 +12,7 @@
 #include "vantage/pipeline/ground.h"
 #include "vantage/pipeline/mask_stream.h"
 #include "vantage/pipeline/recent_tracks.h"
+#include "vantage/pipeline/rehearsal.h"
 
 namespace vantage {
 namespace {
@@ -193,18 +194,19 @@ Status BindStages(const Scene& scene, StageOptions& options) {
 
 Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, int threads,
                                const RunControl& control, const MaskSink& mask_sink) {
-  VANTAGE_ASSIGN_OR_RETURN(PersonReport person,
-                           ResolvePerson(scene, options.background, threads, control));
-  VANTAGE_ASSIGN_OR_RETURN(Ground ground, LayOutGround(scene, person.used, options.occupancy));
+  VANTAGE_ASSIGN_OR_RETURN(Rehearsed rehearsed,
+                           Rehearse(scene, options.background, threads, control));
+  MaskStream& stream = rehearsed.stream;
+  VANTAGE_ASSIGN_OR_RETURN(Ground ground,
+                           LayOutGround(scene, rehearsed.person.used, options.occupancy));
   VANTAGE_ASSIGN_OR_RETURN(const OccupancySolver solver,
                            OccupancySolver::Create(ground.views, options.occupancy));
-  VANTAGE_ASSIGN_OR_RETURN(MaskStream stream,
-                           MaskStream::Create(scene, options.background, threads));
 
   MapsResult result;
   OccupancyMaps& maps = result.maps;
   MapsReport& report = result.report;
-  report.person = std::move(person);
+  report.rehearsal_secs = rehearsed.seconds;
+  report.person = std::move(rehearsed.person);
   report.area_cells = ground.AreaCells();
   report.unseen_area_cells = ground.UnseenAreaCells();
   report.extension = ground.extension;

@@ -35,6 +35,8 @@ Status BindStages(const Scene& scene, StageOptions& options);
 /// What the way from pictures to maps did.
 struct MapsReport {
   std::int64_t frames = 0;
+  /// The first pass over the beginning of the recording (Rehearse).
+  double rehearsal_secs = 0;
   PersonReport person;
   /// Fixed-point iterations per frame, and frames that used all allowed ones without settling.
   double mean_iterations = 0;
