@@ -73,23 +73,14 @@ std::int64_t FramesToProcess(const SourceInfo& info, const Flags& flags) {
 }
 
 /// The input is opened for itself once more.
-Status Rehearse(const Flags& flags, const BackgroundOptions& options, int threads,
-                const RunControl& control, BackgroundSubtractor& subtractor) {
+Status RehearseInput(const Flags& flags, const BackgroundOptions& options, int threads,
+                     const RunControl& control, BackgroundSubtractor& subtractor) {
   VANTAGE_ASSIGN_OR_RETURN(const std::unique_ptr<FrameSource> source, OpenInput(flags.input));
   const std::int64_t total = FramesToProcess(source->info(), flags);
+  VANTAGE_RETURN_IF_ERROR(source->Skip(flags.start));
   const RehearsalPlan plan = PlanRehearsal(
       options.rehearsal, total > 0 ? std::optional(total) : std::nullopt, RateOf(source->info()));
-  cv::Mat frame, mask;
-  std::int64_t skip = flags.start;
-  for (std::int64_t sample = 0; sample < plan.samples; ++sample) {
-    if (control.Stopped()) return Cancelled();
-    VANTAGE_RETURN_IF_ERROR(source->Skip(skip));
-    VANTAGE_ASSIGN_OR_RETURN(const bool more, source->Read(frame));
-    if (!more) break;
-    VANTAGE_RETURN_IF_ERROR(subtractor.Rehearse(frame, mask, threads));
-    skip = plan.interval - 1;
-  }
-  return {};
+  return Rehearse(subtractor, *source, plan, threads, control);
 }
 
 Status RunBackground(const Flags& flags, const CommonFlags& common) {
@@ -119,7 +110,7 @@ Status RunBackground(const Flags& flags, const CommonFlags& common) {
     return Fail("{}: holds {} frames; --start must be below that", flags.input.string(), skipped);
   }
   const std::int64_t total = FramesToProcess(source->info(), flags);
-  VANTAGE_RETURN_IF_ERROR(Rehearse(flags, options, common.threads, control, subtractor));
+  VANTAGE_RETURN_IF_ERROR(RehearseInput(flags, options, common.threads, control, subtractor));
   cv::Mat frame, mask;
   for (std::int64_t done = 0; !flags.frames || done < *flags.frames; ++done) {
     if (control.Stopped()) return Cancelled();

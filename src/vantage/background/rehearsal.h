@@ -15,7 +15,8 @@ namespace vantage {
 /// of that time is background all the same.
 struct RehearsalOptions {
   /// How much of the beginning, seconds, >= 0; 0: no rehearsal, the first frame is the background
-  /// at first.
+  /// at first. Nor is there one where the recording is shorter than half of this: too many people
+  /// stand at one place for most of it.
   double rehearsal_secs = 60;
   /// Samples at most, >= 1. Each counts the same in the background.
   int rehearsal_frames = 100;
@@ -28,8 +29,13 @@ struct RehearsalPlan {
   std::int64_t samples = 0;
 };
 
-/// `frame_count` is that of the recording, none when not known. Enough samples to reach its end or
-/// that of rehearsal_secs, not more than rehearsal_frames.
+/// Samples of the beginning: enough to reach the end of the recording or of rehearsal_secs, not
+/// more than rehearsal_frames, nor nearer to each other than half a second, in which people hardly
+/// move. `frame_count` is that of the recording, none when not known.
+RehearsalPlan SampleBeginning(const RehearsalOptions& options,
+                              std::optional<std::int64_t> frame_count, double frames_per_second);
+
+/// The same where there is to be a rehearsal; otherwise no samples.
 RehearsalPlan PlanRehearsal(const RehearsalOptions& options,
                             std::optional<std::int64_t> frame_count, double frames_per_second);
 

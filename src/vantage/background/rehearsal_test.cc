@@ -16,18 +16,26 @@ namespace {
 using ::testing::HasSubstr;
 using testing::MessageOf;
 
-TEST(PlanRehearsal, SamplesReachTheEndOfTheWindow) {
+TEST(SampleBeginning, ReachesTheEndOfTheWindow) {
   const RehearsalOptions options{.rehearsal_secs = 60, .rehearsal_frames = 100};
   const auto planned = [&](std::optional<std::int64_t> frames, double rate) {
-    const RehearsalPlan plan = PlanRehearsal(options, frames, rate);
+    const RehearsalPlan plan = SampleBeginning(options, frames, rate);
     return std::pair(plan.interval, plan.samples);
   };
   EXPECT_EQ(planned(1000, 20), std::pair(std::int64_t{10}, std::int64_t{100}));
   EXPECT_EQ(planned(100000, 20), std::pair(std::int64_t{12}, std::int64_t{100}));
   EXPECT_EQ(planned(std::nullopt, 7), std::pair(std::int64_t{5}, std::int64_t{84}));
-  EXPECT_EQ(planned(99, 20), std::pair(std::int64_t{1}, std::int64_t{99}));
-  EXPECT_EQ(planned(101, 20), std::pair(std::int64_t{2}, std::int64_t{51}));
+  EXPECT_EQ(planned(99, 20), std::pair(std::int64_t{10}, std::int64_t{10}));
+  EXPECT_EQ(planned(101, 20), std::pair(std::int64_t{10}, std::int64_t{11}));
+  EXPECT_EQ(planned(101, 1), std::pair(std::int64_t{1}, std::int64_t{60}));
   EXPECT_EQ(planned(0, 20).second, 0);
+}
+
+TEST(PlanRehearsal, NotOfShortRecordings) {
+  const RehearsalOptions options{.rehearsal_secs = 60, .rehearsal_frames = 100};
+  EXPECT_EQ(PlanRehearsal(options, 599, 20).samples, 0);
+  EXPECT_EQ(PlanRehearsal(options, 600, 20).samples, 60);
+  EXPECT_EQ(PlanRehearsal(options, std::nullopt, 20).samples, 100);
   EXPECT_EQ(PlanRehearsal({.rehearsal_secs = 0}, 1000, 20).samples, 0);
 }
 

@@ -177,4 +177,17 @@ Status BackgroundSubtractor::Apply(const cv::Mat& bgr, cv::Mat& mask, int thread
   return {};
 }
 
+Status Rehearse(BackgroundSubtractor& subtractor, FrameSource& source, const RehearsalPlan& plan,
+                int threads, const RunControl& control) {
+  cv::Mat frame, mask;
+  for (std::int64_t sample = 0; sample < plan.samples; ++sample) {
+    if (control.Stopped()) return Cancelled();
+    if (sample > 0) VANTAGE_RETURN_IF_ERROR(source.Skip(plan.interval - 1));
+    VANTAGE_ASSIGN_OR_RETURN(const bool more, source.Read(frame));
+    if (!more) break;
+    VANTAGE_RETURN_IF_ERROR(subtractor.Rehearse(frame, mask, threads));
+  }
+  return {};
+}
+
 }  // namespace vantage

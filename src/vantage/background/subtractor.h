@@ -15,6 +15,8 @@
 #include "vantage/background/shadows.h"
 #include "vantage/base/options.h"
 #include "vantage/base/result.h"
+#include "vantage/base/run_control.h"
+#include "vantage/video/frame_source.h"
 
 namespace vantage {
 
@@ -90,5 +92,10 @@ class BackgroundSubtractor {
   cv::Mat last_mask_;  ///< of the last frame that was learnt; what a frozen camera shows
   bool reliable_ = true;
 };
+
+/// Rehearses on samples of `source`, which stands at the recording's first frame and is read as far
+/// as they reach; fewer where it ends. Fails as the source does.
+Status Rehearse(BackgroundSubtractor& subtractor, FrameSource& source, const RehearsalPlan& plan,
+                int threads, const RunControl& control = {});
 
 }  // namespace vantage

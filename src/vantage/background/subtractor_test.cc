@@ -315,7 +315,7 @@ TEST(Subtractor, OptionsAreOneFlatTable) {
             R"("cb_bins":8,"ghost_judgement":"still","ghost_min_area":50,)"
             R"("ghost_still_frames":8,"ghost_still_levels":12,"ghost_whole_share":0.5,)"
             R"("ghost_join":4,"ghost_free_share":0.3,"ghost_agree_frames":3,"open":1,"close":2,)"
-            R"("min_area":40})");
+            R"("min_area":40,"rehearsal_secs":60.0,"rehearsal_frames":100})");
   BackgroundOptions options;
   options.cleanup.close_px = 99;
   EXPECT_EQ(MessageOf(BackgroundSubtractor::Create(kSize, options)),

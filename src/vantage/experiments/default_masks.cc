@@ -27,10 +27,8 @@ cv::Mat NearMoving(const cv::Mat& labels) {
   return near;
 }
 
-Result<DefaultMasks> RunDefaultMasks(LabelledSequence sequence, const BackgroundOptions& options,
+Result<DefaultMasks> RunDefaultMasks(LabelledSequence sequence, BackgroundSubtractor subtractor,
                                      const RunControl& control) {
-  VANTAGE_ASSIGN_OR_RETURN(BackgroundSubtractor subtractor,
-                           BackgroundSubtractor::Create(sequence.size(), options));
   DefaultMasks sum;
   LabelledFrame frame;
   cv::Mat mask;

@@ -29,10 +29,8 @@ struct DefaultMasks {
 /// half their height. CV_8UC1 of the labels' size.
 cv::Mat NearMoving(const cv::Mat& labels);
 
-/// Runs the background stage with these options over a sequence, on one thread, and counts all
-/// frames that have truth.
-Result<DefaultMasks> RunDefaultMasks(LabelledSequence sequence,
-                                     const BackgroundOptions& options = {},
+/// Runs a background stage over a sequence, on one thread, and counts all frames that have truth.
+Result<DefaultMasks> RunDefaultMasks(LabelledSequence sequence, BackgroundSubtractor subtractor,
                                      const RunControl& control = {});
 
 }  // namespace vantage

@@ -33,10 +33,11 @@ TEST(RunDefaultMasks, EqualsADirectComputation) {
   const auto open = [&] {
     return LabelledSequence::OpenRecording(folder.path(), 0, {.first = 10}).value();
   };
-  const DefaultMasks found = RunDefaultMasks(open()).value();
-
   LabelledSequence sequence = open();
-  auto subtractor = BackgroundSubtractor::Create(sequence.size(), {}).value();
+  const auto create = [&] { return BackgroundSubtractor::Create(sequence.size(), {}).value(); };
+  const DefaultMasks found = RunDefaultMasks(open(), create()).value();
+
+  BackgroundSubtractor subtractor = create();
   MaskCounts counts;
   std::int64_t near = 0;
   LabelledFrame frame;

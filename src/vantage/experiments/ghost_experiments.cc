@@ -13,6 +13,7 @@
 #include "vantage/experiments/mask_recordings.h"
 #include "vantage/scene/scene.h"
 #include "vantage/simulation/presets.h"
+#include "vantage/video/open.h"
 
 namespace vantage {
 namespace {
@@ -60,8 +61,19 @@ Result<CellPtr> DefaultsCell(const Study& study, const std::string& preset) {
     for (int camera = 0; camera < cameras; ++camera) {
       VANTAGE_ASSIGN_OR_RETURN(LabelledSequence sequence,
                                LabelledSequence::OpenRecording(folder, camera, {}));
-      VANTAGE_ASSIGN_OR_RETURN(const DefaultMasks one,
-                               RunDefaultMasks(std::move(sequence), {}, run.control));
+      const BackgroundOptions options;
+      VANTAGE_ASSIGN_OR_RETURN(
+          BackgroundSubtractor subtractor,
+          BackgroundSubtractor::Create(sequence.size(), options, scene.frames_per_second));
+      const SceneCamera& filmed = scene.cameras[static_cast<std::size_t>(camera)];
+      VANTAGE_ASSIGN_OR_RETURN(const auto pictures, OpenVideo(filmed.source.path));
+      VANTAGE_RETURN_IF_ERROR(Rehearse(
+          subtractor, *pictures,
+          PlanRehearsal(options.rehearsal, pictures->info().frame_count, scene.frames_per_second),
+          1, run.control));
+      VANTAGE_ASSIGN_OR_RETURN(
+          const DefaultMasks one,
+          RunDefaultMasks(std::move(sequence), std::move(subtractor), run.control));
       sum += one;
     }
     const MaskMeasures measures = MeasureMasks(sum.counts);

@@ -3,6 +3,7 @@
 #include "vantage/pipeline/rehearsal.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,39 +15,68 @@ namespace vantage {
 namespace {
 
 constexpr std::int64_t kQueue = 4;  // samples that wait for the next stage
+// Without a rehearsal: so much is gone over, and measured at this interval.
+constexpr double kUnrehearsed_s = 30;
+constexpr double kMeasured_s = 0.5;
 
-/// The sampled frames go through a chain as those of the recording do: every camera in a lane of
-/// its own, its samples in order.
-Status GoOver(MaskStream& stream, const RehearsalPlan& plan, PersonSizeMeter* meter,
-              std::int64_t first_measured, int threads, const RunControl& control) {
+/// What the first pass does.
+struct Pass {
+  RehearsalPlan plan;
+  /// The cameras learn by it; otherwise they judge their frames as they will in the recording.
+  bool rehearses = false;
+  /// Samples whose masks are measured: this one, and every so many.
+  std::int64_t first_measured = 0;
+  std::int64_t measured_every = 1;
+};
+
+Pass PlanPass(const MaskStream& stream, const BackgroundOptions& options, double rate) {
+  const bool learns =
+      std::ranges::any_of(stream.subtractors(), [](const auto& camera) { return !!camera; });
+  const std::optional<std::int64_t> frames = stream.frame_count();
+  if (!learns) return {.plan = SampleBeginning({}, frames, rate)};  // masks as they are
+  const RehearsalPlan plan = PlanRehearsal(options.rehearsal, frames, rate);
+  if (plan.samples > 0) {
+    return {.plan = plan, .rehearses = true, .first_measured = plan.samples / 4};
+  }
+  // A background that begins with the first frame needs every frame.
+  const auto most = static_cast<std::int64_t>(kUnrehearsed_s * rate);
+  return {.plan = {.interval = 1, .samples = std::min(frames.value_or(most), most)},
+          .measured_every = std::max<std::int64_t>(1, std::lround(kMeasured_s * rate))};
+}
+
+/// The samples go through a chain as the recording's frames do: every camera in a lane of its own,
+/// in order.
+Status GoOver(MaskStream& stream, const Pass& pass, PersonSizeMeter* meter, int threads,
+              const RunControl& control) {
   using Pictures = std::vector<cv::Mat>;
   const auto cameras = static_cast<std::size_t>(stream.cameras());
   Ring<Pictures> pictures(kQueue, Pictures(cameras));
   Ring<Pictures> masks(kQueue, Pictures(cameras));
-  const FlowStage reading{.lanes = stream.cameras(),
-                          .queue = kQueue,
-                          .work = [&](std::int64_t sample, int camera) -> Result<bool> {
-                            if (sample == plan.samples) return false;
-                            if (sample > 0)
-                              VANTAGE_RETURN_IF_ERROR(stream.Skip(camera, plan.interval - 1));
-                            return stream.Read(camera, sample * plan.interval,
-                                               pictures[sample][static_cast<std::size_t>(camera)]);
-                          }};
-  const FlowStage learning{.lanes = stream.cameras(),
-                           .queue = kQueue,
-                           .work = [&](std::int64_t sample, int camera) -> Result<bool> {
-                             const auto index = static_cast<std::size_t>(camera);
-                             VANTAGE_RETURN_IF_ERROR(stream.Rehearse(
-                                 camera, pictures[sample][index], masks[sample][index]));
-                             return true;
-                           }};
-  const FlowStage measuring{.work = [&](std::int64_t sample, int) -> Result<bool> {
-    if (meter != nullptr && sample >= first_measured) {
+  const auto read = [&](std::int64_t sample, int camera) -> Result<bool> {
+    if (sample == pass.plan.samples) return false;
+    if (sample > 0) VANTAGE_RETURN_IF_ERROR(stream.Skip(camera, pass.plan.interval - 1));
+    return stream.Read(camera, sample * pass.plan.interval,
+                       pictures[sample][static_cast<std::size_t>(camera)]);
+  };
+  const auto learn = [&](std::int64_t sample, int camera) -> Result<bool> {
+    const auto index = static_cast<std::size_t>(camera);
+    const cv::Mat& picture = pictures[sample][index];
+    cv::Mat& mask = masks[sample][index];
+    VANTAGE_RETURN_IF_ERROR(pass.rehearses ? stream.Rehearse(camera, picture, mask)
+                                           : stream.Subtract(camera, picture, {}, mask));
+    return true;
+  };
+  const auto measure = [&](std::int64_t sample, int) -> Result<bool> {
+    const std::int64_t since = sample - pass.first_measured;
+    if (meter != nullptr && since >= 0 && since % pass.measured_every == 0) {
       VANTAGE_RETURN_IF_ERROR(meter->Add(masks[sample]));
     }
     return true;
-  }};
-  const auto flow = RunFlow(std::vector{reading, learning, measuring}, threads, control);
+  };
+  const std::vector<FlowStage> chain = {{.lanes = stream.cameras(), .queue = kQueue, .work = read},
+                                        {.lanes = stream.cameras(), .queue = kQueue, .work = learn},
+                                        {.work = measure}};
+  const auto flow = RunFlow(chain, threads, control);
   return flow ? Status() : tl::unexpected(flow.error());
 }
 
@@ -56,9 +86,7 @@ Result<Rehearsed> Rehearse(const Scene& scene, const BackgroundOptions& options,
                            const RunControl& control) {
   const Stopwatch stopwatch;
   VANTAGE_ASSIGN_OR_RETURN(MaskStream stream, MaskStream::Create(scene, options, threads));
-  const bool learns =
-      std::ranges::any_of(stream.subtractors(), [](const auto& camera) { return !!camera; });
-  const bool keeps = learns && options.rehearsal.rehearsal_secs > 0;
+  const Pass pass = PlanPass(stream, options, scene.frames_per_second);
   std::optional<PersonSizeMeter> meter;
   if (!scene.person.IsGiven()) {
     std::vector<Camera> cameras;
@@ -66,13 +94,10 @@ Result<Rehearsed> Rehearse(const Scene& scene, const BackgroundOptions& options,
     meter.emplace(std::move(cameras), scene.area, scene.person.shape);
   }
   std::optional<PersonSizeReport> measured;
-  if (keeps || meter) {
-    const RehearsalPlan plan = PlanRehearsal(keeps ? options.rehearsal : RehearsalOptions(),
-                                             stream.frame_count(), scene.frames_per_second);
-    VANTAGE_RETURN_IF_ERROR(GoOver(stream, plan, meter ? &*meter : nullptr,
-                                   learns ? plan.samples / 4 : 0, threads, control));
+  if (pass.rehearses || meter) {
+    VANTAGE_RETURN_IF_ERROR(GoOver(stream, pass, meter ? &*meter : nullptr, threads, control));
     if (meter) measured = meter->Report();
-    VANTAGE_RETURN_IF_ERROR(stream.Rewind(scene, options, keeps));
+    VANTAGE_RETURN_IF_ERROR(stream.Rewind(scene, options, pass.rehearses));
   }
   PersonReport person = ResolvePerson(scene, std::move(measured));
   return Rehearsed{

@@ -107,7 +107,7 @@ TEST_F(OneCamera, TheBeginningIsSampled) {
   scene.frame_count = 90;
   const auto shortened = Rehearse(scene, {}, 1);
   ASSERT_TRUE(shortened) << MessageOf(shortened);
-  EXPECT_EQ(shortened->person.measured->frames, 90);
+  EXPECT_EQ(shortened->person.measured->frames, 45);
 }
 
 TEST_F(OneCamera, GivenLengthsArePreferred) {
@@ -141,15 +141,15 @@ TEST_F(OneCamera, TooFewFiguresGiveTheDefaultAndSaySo) {
   EXPECT_FALSE(report->found);
   EXPECT_EQ(report->used.width_m, PersonOptions().width_m + CellAllowance_m(0.5));
   EXPECT_EQ(report->used.height_m, PersonOptions().height_m);
-  EXPECT_THAT(TextOf(*report), HasSubstr("default: 20 figures"));
+  EXPECT_THAT(TextOf(*report), HasSubstr("default: 10 figures"));
   EXPECT_EQ(JsonOf(*report, scene)["width_source"], "default");
 }
 
 /// The same camera delivers pictures; somebody stands in the middle at first.
 class ColorCamera : public OneCamera {
  protected:
-  static constexpr int kFrames = 40;
-  static constexpr int kStays = 12;
+  static constexpr int kFrames = 80;
+  static constexpr int kStays = 24;
 
   ColorCamera() {
     std::filesystem::create_directories(folder_ / "south");
@@ -178,21 +178,21 @@ class ColorCamera : public OneCamera {
 
 TEST_F(ColorCamera, LearnsTheBackgroundAhead) {
   for (const int threads : {1, 3}) {
-    auto rehearsed = Rehearse(Load(), {}, threads);
+    BackgroundOptions options;
+    options.rehearsal.rehearsal_secs = 2 * kFrames / Load().frames_per_second;
+    auto rehearsed = Rehearse(Load(), options, threads);
     ASSERT_TRUE(rehearsed) << MessageOf(rehearsed);
-    EXPECT_EQ(rehearsed->stream.subtractors()[0]->report().rehearsed, kFrames);
-    EXPECT_EQ(rehearsed->person.measured->frames, kFrames - kFrames / 4);
+    EXPECT_EQ(rehearsed->stream.subtractors()[0]->report().rehearsed, kFrames / 2);
+    EXPECT_EQ(rehearsed->person.measured->frames, 30);
     EXPECT_NEAR(cv::countNonZero(FirstMask(*rehearsed)(kSomebody)), kSomebody.area(), 40);
   }
 }
 
-TEST_F(ColorCamera, ForgetsWhatItLearntWithoutRehearsal) {
-  BackgroundOptions options;
-  options.rehearsal.rehearsal_secs = 0;
-  auto measured = Rehearse(Load(), options, 2);
+TEST_F(ColorCamera, ForgetsWhatItLearntWhereThereIsNoRehearsal) {
+  auto measured = Rehearse(Load(), {}, 2);  // too short
   ASSERT_TRUE(measured) << MessageOf(measured);
   EXPECT_EQ(measured->stream.subtractors()[0]->report().rehearsed, 0);
-  EXPECT_EQ(measured->person.measured->frames, kFrames - kFrames / 4);
+  EXPECT_EQ(measured->person.measured->frames, 40);
   EXPECT_EQ(cv::countNonZero(FirstMask(*measured)), 0);
 }
 
