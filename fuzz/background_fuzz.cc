@@ -56,12 +56,13 @@ class RandomOptions final : public OptionVisitor {
     }
     Change(value, range, 1e-6);
   }
+  void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view,
+                const Range& range) override {
+    ChangeOr(info, value, range);
+  }
   void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view,
                 const Range& range) override {
-    double number = value.value_or(1);
-    Number(info, number, range);
-    value.reset();
-    if (broken || random_.Chance(0.7)) value = number;
+    ChangeOr(info, value, range);
   }
   bool broken = false;
 
@@ -72,6 +73,14 @@ class RandomOptions final : public OptionVisitor {
   }
 
  private:
+  template <class T>
+  void ChangeOr(const OptionInfo& info, std::optional<T>& value, const Range& range) {
+    T number = value.value_or(T{1});
+    Number(info, number, range);
+    value.reset();
+    if (broken || random_.Chance(0.7)) value = number;
+  }
+
   /// A bound, another size of the same order, or anywhere in the range.
   void Change(double& value, const Range& range, double step) {
     if (!random_.Chance(changed_share_)) return;

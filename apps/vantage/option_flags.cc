@@ -38,6 +38,10 @@ class FlagAdder final : public OptionVisitor {
   void Number(const OptionInfo& info, double& value, const Range& range) override {
     AddNumber<double>(info, fmt::to_string(value), range);
   }
+  void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view word,
+                const Range& range) override {
+    AddNumber<int>(info, value ? fmt::to_string(*value) : std::string(word), range, word);
+  }
   void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
                 const Range& range) override {
     AddNumber<double>(info, value ? fmt::to_string(*value) : std::string(word), range, word);
@@ -98,17 +102,13 @@ class FlagSetter final : public OptionVisitor {
   void Flag(const OptionInfo& info, bool& value) override { Set(info, value); }
   void Number(const OptionInfo& info, int& value, const Range&) override { Set(info, value); }
   void Number(const OptionInfo& info, double& value, const Range&) override { Set(info, value); }
+  void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view word,
+                const Range&) override {
+    SetOr(info, value, word);
+  }
   void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
                 const Range&) override {
-    std::string text;
-    Set(info, text);
-    if (text == word) {
-      value.reset();
-    } else if (!text.empty()) {
-      double number = 0;
-      Set(info, number);
-      value = number;
-    }
+    SetOr(info, value, word);
   }
 
  protected:
@@ -126,6 +126,18 @@ class FlagSetter final : public OptionVisitor {
   void Set(const OptionInfo& info, T& value) const {
     const auto flag = flags_.find(info.name);
     if (flag != flags_.end() && flag->second->count() > 0) value = flag->second->as<T>();
+  }
+  template <class T>
+  void SetOr(const OptionInfo& info, std::optional<T>& value, std::string_view word) const {
+    std::string text;
+    Set(info, text);
+    if (text == word) {
+      value.reset();
+    } else if (!text.empty()) {
+      T number{};
+      Set(info, number);
+      value = number;
+    }
   }
   const FlagMap& flags_;
 };

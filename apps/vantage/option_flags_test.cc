@@ -10,12 +10,14 @@ namespace {
 using ::testing::HasSubstr;
 
 struct Options {
-  std::optional<double> margin_m;
+  std::optional<double> margin_m = std::nullopt;
+  std::optional<int> reach = std::nullopt;
   double size_m = 1;
 };
 
 void VisitOptions(Options& o, OptionVisitor& v) {
   v.NumberOr({"margin", "m", "a margin"}, o.margin_m, "auto", Range::Between(0, 50));
+  v.NumberOr({"reach", "cells", "a reach"}, o.reach, "none", Range::Between(0, 5));
   v.Number({"size", "m", "a size"}, o.size_m, Range::Above(0));
 }
 
@@ -40,6 +42,10 @@ TEST(OptionFlags, ANumberOrAWordTakesBothAndKeepsWhatIsNotGiven) {
   EXPECT_EQ(Parsed("--grid-margin=auto", {.margin_m = 3.0}, error).margin_m, std::nullopt) << error;
   EXPECT_EQ(Parsed("--grid-size 2", {.margin_m = 3.0}, error).margin_m, 3.0) << error;
   EXPECT_EQ(Parsed("--grid-size 2", {}, error).margin_m, std::nullopt) << error;
+  EXPECT_EQ(Parsed("--grid-reach 4", {}, error).reach, 4) << error;
+  EXPECT_EQ(Parsed("--grid-reach 0", {}, error).reach, 0) << error;
+  EXPECT_EQ(Parsed("--grid-reach none", {.reach = 3}, error).reach, std::nullopt) << error;
+  EXPECT_EQ(Parsed("--grid-size 2", {.reach = 3}, error).reach, 3) << error;
 }
 
 TEST(OptionFlags, ANumberOrAWordRefusesTheRest) {
@@ -52,6 +58,10 @@ TEST(OptionFlags, ANumberOrAWordRefusesTheRest) {
     Parsed(std::string("--grid-margin=") + wrong, {}, error);
     EXPECT_THAT(error, HasSubstr("--grid-margin")) << wrong;
   }
+  for (const char* wrong : {"6", "-1", "1.5", "''", "None", "99999999999"}) {
+    Parsed(std::string("--grid-reach=") + wrong, {}, error);
+    EXPECT_THAT(error, HasSubstr("--grid-reach")) << wrong;
+  }
 }
 
 TEST(OptionFlags, TheHelpSaysTheWordAndTheDefault) {
@@ -63,6 +73,8 @@ TEST(OptionFlags, TheHelpSaysTheWordAndTheDefault) {
   EXPECT_THAT(help({}), HasSubstr("--margin NUMBER|auto=auto"));
   EXPECT_THAT(help({.margin_m = 2.5}), HasSubstr("--margin NUMBER|auto=2.5"));
   EXPECT_THAT(help({}), HasSubstr("between 0 and 50, or auto"));
+  EXPECT_THAT(help({}), HasSubstr("--reach NUMBER|none=none"));
+  EXPECT_THAT(help({.reach = 2}), HasSubstr("--reach NUMBER|none=2"));
 }
 
 }  // namespace

@@ -55,6 +55,12 @@ void OptionValidator::Number(const OptionInfo& info, double& value, const Range&
   }
 }
 
+void OptionValidator::NumberOr(const OptionInfo& info, std::optional<int>& value,
+                               std::string_view word, const Range& range) {
+  std::optional<double> number = value;
+  NumberOr(info, number, word, range);
+}
+
 void OptionValidator::NumberOr(const OptionInfo& info, std::optional<double>& value,
                                std::string_view word, const Range& range) {
   if (status && value && !range.Contains(*value)) {
@@ -80,10 +86,17 @@ void OptionRecorder::Number(const OptionInfo& info, int& value, const Range&) {
 void OptionRecorder::Number(const OptionInfo& info, double& value, const Range&) {
   json_[std::string(info.name)] = value;
 }
-void OptionRecorder::NumberOr(const OptionInfo& info, std::optional<double>& value,
-                              std::string_view word, const Range&) {
+void OptionRecorder::NumberOr(const OptionInfo& info, std::optional<int>& value,
+                              std::string_view word, const Range& range) {
   if (value)
-    json_[std::string(info.name)] = *value;
+    Number(info, *value, range);
+  else
+    json_[std::string(info.name)] = word;
+}
+void OptionRecorder::NumberOr(const OptionInfo& info, std::optional<double>& value,
+                              std::string_view word, const Range& range) {
+  if (value)
+    Number(info, *value, range);
   else
     json_[std::string(info.name)] = word;
 }

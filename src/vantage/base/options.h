@@ -63,6 +63,8 @@ class OptionVisitor {
   virtual void Number(const OptionInfo& info, double& value, const Range& range) = 0;
   /// A number that may also be said by a word, which stands for nullopt: "auto" for what is found
   /// from the data. The word must not be a number. Every value that is a number keeps to `range`.
+  virtual void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view word,
+                        const Range& range) = 0;
   virtual void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
                         const Range& range) = 0;
 
@@ -94,6 +96,8 @@ class OptionValidator final : public OptionVisitor {
   void Flag(const OptionInfo&, bool&) override {}
   void Number(const OptionInfo& info, int& value, const Range& range) override;
   void Number(const OptionInfo& info, double& value, const Range& range) override;
+  void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view word,
+                const Range& range) override;
   void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
                 const Range& range) override;
   Status status;
@@ -112,6 +116,8 @@ class OptionRecorder final : public OptionVisitor {
   void Flag(const OptionInfo& info, bool& value) override;
   void Number(const OptionInfo& info, int& value, const Range& range) override;
   void Number(const OptionInfo& info, double& value, const Range& range) override;
+  void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view word,
+                const Range& range) override;
   void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
                 const Range& range) override;
 

@@ -21,6 +21,7 @@ struct ExampleOptions {
   int count = 3;
   double side_m = 0.5;
   std::optional<double> margin_m;
+  std::optional<int> reach;
   bool on = true;
   Mode mode = Mode::kExact;
 };
@@ -29,6 +30,7 @@ void VisitOptions(ExampleOptions& o, OptionVisitor& v) {
   v.Number({"count", "", "how many"}, o.count, Range::Between(1, 8));
   v.Number({"side", "m", "side of a cell"}, o.side_m, Range::Above(0));
   v.NumberOr({"margin", "m", "how far"}, o.margin_m, "auto", Range::AtLeast(0));
+  v.NumberOr({"reach", "cells", "how many cells"}, o.reach, "none", Range::Between(0, 5));
   v.Flag({"on", "", "whether"}, o.on);
   v.Choice({"mode", "", "which"}, o.mode, {{"fast", Mode::kFast}, {"exact", Mode::kExact}});
 }
@@ -53,7 +55,12 @@ TEST(Options, MessagesNameFieldValueAndRule) {
   EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")),
             "stage.margin is nan; it must be at least 0 m, or \"auto\"");
   options.margin_m = 0;
+  options.reach = 5;
   EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")), "");
+  options.reach = 6;
+  EXPECT_EQ(MessageOf(ValidateOptions(options, "stage")),
+            "stage.reach is 6; it must be between 0 and 5 cells, or \"none\"");
+  options.reach.reset();
   options.mode = static_cast<Mode>(7);
   EXPECT_EQ(MessageOf(ValidateOptions(options, "")),
             "mode has no valid value; it must be one of fast, exact");
@@ -62,9 +69,11 @@ TEST(Options, MessagesNameFieldValueAndRule) {
 TEST(Options, RecordHoldsEveryField) {
   nlohmann::ordered_json json;
   RecordOptions(ExampleOptions{}, json);
-  EXPECT_EQ(json.dump(), R"({"count":3,"side":0.5,"margin":"auto","on":true,"mode":"exact"})");
-  RecordOptions(ExampleOptions{.margin_m = 2.5}, json);
-  EXPECT_EQ(json.dump(), R"({"count":3,"side":0.5,"margin":2.5,"on":true,"mode":"exact"})");
+  EXPECT_EQ(json.dump(),
+            R"({"count":3,"side":0.5,"margin":"auto","reach":"none","on":true,"mode":"exact"})");
+  RecordOptions(ExampleOptions{.margin_m = 2.5, .reach = 2}, json);
+  EXPECT_EQ(json.dump(),
+            R"({"count":3,"side":0.5,"margin":2.5,"reach":2,"on":true,"mode":"exact"})");
 }
 
 TEST(ParallelFor, VisitsEveryIndexOnceWhateverTheThreadCount) {

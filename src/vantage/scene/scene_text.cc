@@ -120,6 +120,10 @@ class OptionWriter final : public OptionVisitor {
   void Number(const OptionInfo& info, double& value, const Range&) override {
     text_ += fmt::format("{} = {}\n", info.name, Text(value));
   }
+  void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view word,
+                const Range&) override {
+    text_ += fmt::format("{} = {}\n", info.name, value ? fmt::to_string(*value) : Quoted(word));
+  }
   void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
                 const Range&) override {
     text_ += fmt::format("{} = {}\n", info.name, value ? Text(*value) : Quoted(word));

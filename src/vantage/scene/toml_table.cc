@@ -98,15 +98,22 @@ class OptionBinder final : public OptionVisitor {
   }
   void Number(const OptionInfo& info, int& value, const Range& range) override {
     Set(info, value, [&]() -> Result<int> {
-      VANTAGE_ASSIGN_OR_RETURN(const std::int64_t number,
-                               table_.Integer(info.name, std::numeric_limits<int>::min(),
-                                              std::numeric_limits<int>::max()));
+      VANTAGE_ASSIGN_OR_RETURN(const int number, Whole(info));
       VANTAGE_RETURN_IF_ERROR(table_.Number(info.name, range, info.unit));
-      return static_cast<int>(number);
+      return number;
     });
   }
   void Number(const OptionInfo& info, double& value, const Range& range) override {
     Set(info, value, [&] { return table_.Number(info.name, range, info.unit); });
+  }
+  void NumberOr(const OptionInfo& info, std::optional<int>& value, std::string_view word,
+                const Range& range) override {
+    Set(info, value, [&]() -> Result<std::optional<int>> {
+      VANTAGE_ASSIGN_OR_RETURN(const std::optional<double> number,
+                               table_.NumberOr(info.name, word, range, info.unit));
+      if (!number) return std::nullopt;
+      return Whole(info);
+    });
   }
   void NumberOr(const OptionInfo& info, std::optional<double>& value, std::string_view word,
                 const Range& range) override {
@@ -129,6 +136,12 @@ class OptionBinder final : public OptionVisitor {
   }
 
  private:
+  Result<int> Whole(const OptionInfo& info) const {
+    VANTAGE_ASSIGN_OR_RETURN(const std::int64_t number,
+                             table_.Integer(info.name, std::numeric_limits<int>::min(),
+                                            std::numeric_limits<int>::max()));
+    return static_cast<int>(number);
+  }
   template <class T, class Read>
   void Set(const OptionInfo& info, T& value, const Read& read) {
     names.push_back(info.name);

@@ -19,6 +19,7 @@ struct Options {
   int count = 3;
   double size_m = 0.5;
   std::optional<double> margin_m = 1.0;
+  std::optional<int> reach = 1;
   enum class Kind { kRound, kFlat } kind = Kind::kRound;
 };
 void VisitOptions(Options& o, OptionVisitor& v) {
@@ -26,6 +27,7 @@ void VisitOptions(Options& o, OptionVisitor& v) {
   v.Number({"count", "", "a count"}, o.count, Range::Between(1, 8));
   v.Number({"size", "m", "a length"}, o.size_m, Range::AboveUpTo(0, 10));
   v.NumberOr({"margin", "m", "a margin"}, o.margin_m, "auto", Range::AtLeast(0));
+  v.NumberOr({"reach", "cells", "a reach"}, o.reach, "none", Range::Between(0, 5));
   v.Choice({"kind", "", "a kind"}, o.kind,
            {{"round", Options::Kind::kRound}, {"flat", Options::Kind::kFlat}});
 }
@@ -97,6 +99,24 @@ TEST_F(TomlTableTest, BindTakesTheWordOfANumberThatHasOne) {
   EXPECT_THAT(BindError("margin = [2]"), HasSubstr("is an array of 1; it must be a number"));
 }
 
+TEST_F(TomlTableTest, BindTakesTheWordOfAWholeNumberThatHasOne) {
+  const auto reach = [&](const std::string& text) {
+    Options options;
+    const TableReader root = Parse("[stage]\n" + text);
+    EXPECT_TRUE(
+        root.Table("stage").value().Bind([&](OptionVisitor& v) { VisitOptions(options, v); }));
+    return options.reach;
+  };
+  EXPECT_EQ(reach("reach = \"none\""), std::nullopt);
+  EXPECT_EQ(reach("reach = 0"), 0);
+  EXPECT_EQ(reach("reach = 5"), 5);
+  EXPECT_EQ(reach(""), 1);
+  EXPECT_EQ(BindError("reach = 6"),
+            "s.toml:2: stage.reach: is 6; it must be between 0 and 5 cells, or \"none\"");
+  EXPECT_THAT(BindError("reach = 1.5"), HasSubstr("stage.reach: is 1.5; it must be a whole"));
+  EXPECT_THAT(BindError("reach = 99999999999"), HasSubstr("it must be between 0 and 5 cells"));
+}
+
 TEST_F(TomlTableTest, BindErrorsNamePlaceAndRule) {
   EXPECT_EQ(BindError("count = 9"), "s.toml:2: stage.count: is 9; it must be between 1 and 8");
   EXPECT_THAT(BindError("\ncount = 1.5"),
@@ -115,9 +135,10 @@ TEST_F(TomlTableTest, BindErrorsNamePlaceAndRule) {
             "s.toml:2: stage.kind: is \"square\"; it must be one of round, flat");
   EXPECT_EQ(BindError("cuont = 3"),
             "s.toml:2: stage.cuont: unknown key, did you mean count?; allowed are flag, count, "
-            "size, margin, kind");
+            "size, margin, reach, kind");
   EXPECT_EQ(BindError("elephant = 3"),
-            "s.toml:2: stage.elephant: unknown key; allowed are flag, count, size, margin, kind");
+            "s.toml:2: stage.elephant: unknown key; allowed are flag, count, size, margin, "
+            "reach, kind");
 }
 
 TEST_F(TomlTableTest, TypedAccess) {
