@@ -37,7 +37,7 @@ T ValueOf(Result<T> result) {
 /// In these maps people are seen up to half a cell off, anew in every frame, and so seem to move
 /// all the time: a lower cost of movement than the default serves better, chosen by BM_LinkNoise's
 /// sweep on another recording.
-LinkingOptions HallOptions() { return {.movement_cost = 0.5}; }
+LinkingOptions HallOptions() { return {.depth = 1, .movement_cost = 0.5}; }
 
 StreamLinker MakeLinker(const testing::SceneOptions& options,
                         std::span<const std::uint8_t> access) {

@@ -126,8 +126,14 @@ TEST(Link, DepthOrSpeedLimitsMoves) {
   EXPECT_GT(small.Link("--depth 1 --movement-cost 0")["cost"], jumped + 5);
   EXPECT_GT(small.Link("--max-speed 14.9 --movement-cost 0")["cost"], jumped + 5);
   EXPECT_NEAR(small.Link("--max-speed 15.1 --movement-cost 0")["cost"], jumped, 1e-6);
+  EXPECT_GT(small.Link("--movement-cost 0")["cost"], jumped + 5) << "7 m/s";
   small.linking = "max_speed = 15.1\nmovement_cost = 0.0";
   EXPECT_NEAR(small.Link()["cost"], jumped, 1e-6);
+  EXPECT_GT(small.Link("--depth 1")["cost"], jumped + 5) << "in place of the speed";
+  small.linking = "depth = 3\nmovement_cost = 0.0";
+  EXPECT_NEAR(small.Link("--max-speed 1")["cost"], jumped, 1e-6);
+  EXPECT_GT(small.Link("--max-speed 1 --depth none")["cost"], jumped + 5);
+  small.linking = "depth = \"none\"\nmovement_cost = 0.0";
   ExpectOneLine(RunProgram(small.Arguments() + " -o x.csv --max-speed 51"), 1, "max_speed");
   ExpectOneLine(RunProgram(small.Arguments() + " -o x.csv --max-speed 0"), 2, "max-speed");
 }

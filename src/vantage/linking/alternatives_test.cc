@@ -120,7 +120,7 @@ class Enumeration {
       const int columns = to % instance_.columns - from % instance_.columns;
       const int rows = to / instance_.columns - from / instance_.columns;
       const int follower = (frame + 1) * instance_.cells() + to;
-      if (std::max(std::abs(columns), std::abs(rows)) > instance_.options.depth) continue;
+      if (std::max(std::abs(columns), std::abs(rows)) > *instance_.options.depth) continue;
       if (Taken(follower)) continue;
       next = follower;
       solution_.cost = here + instance_.options.movement_cost * std::hypot(columns, rows);
@@ -280,7 +280,7 @@ Instance Corridor() {
   instance.probability[3 * 5 + 3] = 0.9F;
   instance.access.assign(5, 0);
   instance.obstacle.assign(5, 0);
-  instance.options = {.birth_cost = 20, .movement_cost = 0};
+  instance.options = {.depth = 1, .birth_cost = 20, .movement_cost = 0};
   return instance;
 }
 

@@ -13,7 +13,7 @@ LemonAnswer SolveWithLemon(const LinkingProblem& problem, const LinkingOptions& 
                           .probability = problem.probability.data(),
                           .access = problem.access.data(),
                           .obstacle = problem.obstacle.empty() ? nullptr : problem.obstacle.data(),
-                          .depth = options.depth,
+                          .depth = options.depth.value(),
                           .birth_cost = options.birth_cost,
                           .clip = options.clip,
                           .movement_cost = options.movement_cost,

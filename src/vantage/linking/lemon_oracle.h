@@ -9,7 +9,8 @@
 
 namespace vantage::testing {
 
-/// Solves `problem` with LEMON on the explicit node-split graph. Steps are those of options.depth.
+/// Solves `problem` with LEMON on the explicit node-split graph. Steps are those of options.depth,
+/// which must be given.
 LemonAnswer SolveWithLemon(const LinkingProblem& problem, const LinkingOptions& options,
                            LemonAlgorithm algorithm = LemonAlgorithm::kNetworkSimplex);
 

@@ -58,10 +58,12 @@ Result<LinkingResult> Link(const LinkingProblem& problem, const LinkingOptions& 
 }  // namespace
 
 void VisitOptions(LinkingOptions& options, OptionVisitor& visitor) {
-  visitor.Number({"depth", "cells", "Cells that a person may move per frame"}, options.depth,
-                 Range::Between(0, 10));
-  visitor.NumberOr({"max_speed", "m/s", "Speed that a person may have, in place of depth"},
-                   options.max_speed_mps, "none", Range::AboveUpTo(0, 1000));
+  visitor.Number({"max_speed", "m/s", "Speed that a person may have"}, options.max_speed_mps,
+                 Range::AboveUpTo(0, 1000));
+  visitor.NumberOr({"depth", "cells",
+                    "Cells that a person may move per frame, rows and columns alike, in place of "
+                    "max_speed"},
+                   options.depth, "none", Range::Between(0, 10));
   visitor.Number({"birth_cost", "", "A path is added only while it earns more than this"},
                  options.birth_cost, Range::Between(0, 1e6));
   visitor.Number({"clip", "", "Probabilities are clipped to [clip, 1 - clip]"}, options.clip,

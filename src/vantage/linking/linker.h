@@ -23,12 +23,13 @@ enum class AccessRule {
 
 /// Options of the linking stage (algorithms.md section 4; Berclaz et al. 2011).
 struct LinkingOptions {
-  /// Cells that a person may move per frame, Chebyshev distance, 0 <= depth <= 10.
-  int depth = 1;
-  /// In place of `depth`: metres per second that a person may move at most, > 0. Steps to all cells
-  /// whose centre is as near as that in one frame, and always to the 8 neighbours; more than 10
-  /// cells per frame are an error.
-  std::optional<double> max_speed_mps = std::nullopt;
+  /// Metres per second that a person may move at most, > 0: a fast sprint. Steps to all cells whose
+  /// centre is as near as that in one frame, and always to the 8 neighbours; more than 10 cells per
+  /// frame are an error.
+  double max_speed_mps = 7;
+  /// In place of max_speed, which then counts for nothing: cells that a person may move per frame,
+  /// Chebyshev distance, 0 <= depth <= 10.
+  std::optional<int> depth = std::nullopt;
   /// A path is added only while it earns more than this, >= 0: the total cost of the optimum counts
   /// birth_cost for each path.
   double birth_cost = 45;
@@ -63,7 +64,7 @@ struct LinkingProblem {
   std::span<const std::uint8_t> access;
   /// columns * rows, or empty; non-zero: nobody can stand here.
   std::span<const std::uint8_t> obstacle;
-  /// Side of a cell and frame rate; needed with LinkingOptions::max_speed_mps alone.
+  /// Side of a cell and frame rate, > 0; needed unless LinkingOptions::depth is given.
   double cell_m = 0;
   double frames_per_second = 0;
 };

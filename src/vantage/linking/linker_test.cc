@@ -60,7 +60,8 @@ LinkingResult Link(const LinkingProblem& problem, const LinkingOptions& options)
 TEST(Linker, FollowsOnePersonThroughAGap) {
   Corridor corridor(5, 5);
   for (const int frame : {0, 1, 3, 4}) corridor.Set(frame, frame, 0.99F);
-  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 5, .movement_cost = 0});
+  const LinkingResult result =
+      Link(corridor.problem(), {.depth = 1, .birth_cost = 5, .movement_cost = 0});
   ASSERT_THAT(result.paths, SizeIs(1));
   EXPECT_EQ(result.paths[0].first_frame, 0);
   EXPECT_THAT(result.paths[0].cells, ElementsAre(0, 1, 2, 3, 4));
@@ -72,8 +73,8 @@ TEST(Linker, FollowsOnePersonThroughAGap) {
 TEST(Linker, FindsNobodyWherePathsDoNotPay) {
   Corridor corridor(3, 2);
   corridor.Set(0, 1, 0.99F);
-  EXPECT_THAT(Link(corridor.problem(), {.birth_cost = 5}).paths, IsEmpty());
-  EXPECT_EQ(Link(corridor.problem(), {.birth_cost = 5}).report.cost, 0);
+  EXPECT_THAT(Link(corridor.problem(), {.depth = 1, .birth_cost = 5}).paths, IsEmpty());
+  EXPECT_EQ(Link(corridor.problem(), {.depth = 1, .birth_cost = 5}).report.cost, 0);
 }
 
 TEST(Linker, PeopleAppearInTheMiddleOnlyInTheFirstFrame) {
@@ -81,9 +82,9 @@ TEST(Linker, PeopleAppearInTheMiddleOnlyInTheFirstFrame) {
   corridor.NoAccess();
   for (int frame = 2; frame < 4; ++frame) corridor.Set(frame, 4, 0.999F);
   // Two sightings earn 13.8; two frames before and two after cost 4.6 each.
-  EXPECT_THAT(Link(corridor.problem(), {.birth_cost = 0}).paths, IsEmpty());
+  EXPECT_THAT(Link(corridor.problem(), {.depth = 1, .birth_cost = 0}).paths, IsEmpty());
   for (int frame = 0; frame < 2; ++frame) corridor.Set(frame, 4, 0.999F);
-  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 0});
+  const LinkingResult result = Link(corridor.problem(), {.depth = 1, .birth_cost = 0});
   ASSERT_THAT(result.paths, SizeIs(1));
   EXPECT_THAT(result.paths[0].cells, SizeIs(6));
 }
@@ -107,9 +108,10 @@ TEST(Linker, CapKeepsTheBestPaths) {
 TEST(Linker, WalksAroundObstacles) {
   Corridor corridor(3, 3);
   for (int frame = 0; frame < 3; ++frame) corridor.Set(frame, frame, 0.999F);
-  EXPECT_THAT(Link(corridor.problem(), {.birth_cost = 1}).paths, SizeIs(1));
+  const LinkingOptions options{.depth = 1, .birth_cost = 1, .movement_cost = 2};
+  EXPECT_THAT(Link(corridor.problem(), options).paths, SizeIs(1));
   corridor.Block(1);
-  const LinkingResult result = Link(corridor.problem(), {.birth_cost = 1});
+  const LinkingResult result = Link(corridor.problem(), options);
   for (const LinkedPath& path : result.paths) {
     EXPECT_THAT(path.cells, ::testing::Not(::testing::Contains(1)));
   }
@@ -130,11 +132,11 @@ TEST(Linker, MovementCostStraightensTies) {
 }
 
 TEST(Linker, SmallestSizes) {
-  EXPECT_THAT(Link(Corridor(3, 0).problem(), {}).paths, IsEmpty());
+  EXPECT_THAT(Link(Corridor(3, 0).problem(), {.depth = 1}).paths, IsEmpty());
   Corridor one(1, 1);
-  EXPECT_THAT(Link(one.problem(), {.birth_cost = 1}).paths, IsEmpty());
+  EXPECT_THAT(Link(one.problem(), {.depth = 1, .birth_cost = 1}).paths, IsEmpty());
   one.Set(0, 0, 1.0F);
-  const LinkingResult result = Link(one.problem(), {.birth_cost = 1});
+  const LinkingResult result = Link(one.problem(), {.depth = 1, .birth_cost = 1});
   ASSERT_THAT(result.paths, SizeIs(1));
   EXPECT_THAT(result.paths[0].cells, ElementsAre(0));
   EXPECT_NEAR(result.report.cost, 1 - std::log((1 - 1e-6) / 1e-6), 1e-6);
@@ -168,7 +170,8 @@ TEST(Linker, PeopleMoveAtMostAsFastAsAllowed) {
   problem.cell_m = 0.5;
   problem.frames_per_second = 10;
   const auto cost = [&](double speed_mps) {
-    return Link(problem, {.depth = 5, .max_speed_mps = speed_mps, .birth_cost = 1}).report.cost;
+    return Link(problem, {.max_speed_mps = speed_mps, .birth_cost = 1, .movement_cost = 2})
+        .report.cost;
   };
   EXPECT_NEAR(cost(15), 1 - 2 * std::log(99) + 3 * 2, 1e-4);
   EXPECT_EQ(cost(14.9), 0);
@@ -180,7 +183,53 @@ TEST(Linker, PeopleMoveAtMostAsFastAsAllowed) {
     return testing::MessageOf(LinkPaths(wrong, {.max_speed_mps = 60}));
   };
   EXPECT_THAT(message(problem), HasSubstr("linking.max_speed is 60 m/s, 12 cells of 0.5 m"));
-  EXPECT_THAT(message(corridor.problem()), HasSubstr("needs the size of cells"));
+}
+
+TEST(Linker, TheDefaultIsASpeedAndNeedsCellsAndFrameRate) {
+  // Two cells in one frame, 20 frames per second: 7 m/s in cells of 0.175 m.
+  Corridor corridor(9, 2);
+  corridor.Set(0, 4, 0.99F);
+  corridor.Set(1, 6, 0.99F);
+  corridor.NoAccess();
+  LinkingProblem problem = corridor.problem();
+  problem.frames_per_second = 20;
+  const auto paths = [&](double cell_m) {
+    problem.cell_m = cell_m;
+    return Link(problem, {.birth_cost = 1, .movement_cost = 0}).paths.size();
+  };
+  EXPECT_EQ(paths(0.174), 1U);
+  EXPECT_EQ(paths(0.176), 0U);
+
+  const auto message = [&](double cell_m, double frames_per_second) {
+    problem.cell_m = cell_m;
+    problem.frames_per_second = frames_per_second;
+    return testing::MessageOf(LinkPaths(problem, {}));
+  };
+  EXPECT_EQ(message(0.3, 20), "");
+  for (const double wrong : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THAT(message(0.3, wrong), HasSubstr("linking.max_speed needs the size of cells"));
+    EXPECT_THAT(message(wrong, 20), HasSubstr("give linking.depth in its place"));
+  }
+}
+
+TEST(Linker, DepthTakesThePlaceOfMaxSpeed) {
+  Corridor corridor(9, 2);
+  corridor.Set(0, 4, 0.99F);
+  corridor.Set(1, 6, 0.99F);
+  corridor.NoAccess();
+  LinkingProblem problem = corridor.problem();
+  problem.cell_m = 0.5;
+  problem.frames_per_second = 10;
+  for (const double max_speed_mps : {0.01, 1.0, 1000.0}) {
+    const auto paths = [&](int depth) {
+      const LinkingOptions options{
+          .max_speed_mps = max_speed_mps, .depth = depth, .birth_cost = 1, .movement_cost = 0};
+      return Link(problem, options).paths.size();
+    };
+    EXPECT_EQ(paths(0), 0U) << max_speed_mps;
+    EXPECT_EQ(paths(1), 0U) << max_speed_mps;
+    EXPECT_EQ(paths(2), 1U) << max_speed_mps;
+  }
 }
 
 TEST(Linker, RefusesWhatIsNotAProblem) {
@@ -194,21 +243,21 @@ TEST(Linker, RefusesWhatIsNotAProblem) {
 
   LinkingProblem wrong = corridor.problem();
   wrong.frames = 3;
-  EXPECT_THAT(message(wrong, {}), HasSubstr("probability has 6 values; it must have 9"));
+  EXPECT_THAT(message(wrong, {.depth = 1}), HasSubstr("probability has 6 values; it must have 9"));
   wrong = corridor.problem();
   wrong.access = {};
-  EXPECT_THAT(message(wrong, {}), HasSubstr("access has 0 values; it must have 3"));
+  EXPECT_THAT(message(wrong, {.depth = 1}), HasSubstr("access has 0 values; it must have 3"));
   wrong = corridor.problem();
   wrong.columns = 0;
-  EXPECT_THAT(message(wrong, {}), HasSubstr("at least 1 x 1"));
+  EXPECT_THAT(message(wrong, {.depth = 1}), HasSubstr("at least 1 x 1"));
   wrong.columns = wrong.rows = std::numeric_limits<int>::max();
   wrong.frames = std::numeric_limits<std::int64_t>::max();
-  EXPECT_THAT(message(wrong, {}), HasSubstr("at most 32767 on a side"));
+  EXPECT_THAT(message(wrong, {.depth = 1}), HasSubstr("at most 32767 on a side"));
 
   corridor.Set(1, 2, std::numeric_limits<float>::quiet_NaN());
-  EXPECT_THAT(message(corridor.problem(), {}), HasSubstr("cell 2 in frame 1 is nan"));
+  EXPECT_THAT(message(corridor.problem(), {.depth = 1}), HasSubstr("cell 2 in frame 1 is nan"));
   corridor.Set(1, 2, 1.5F);
-  EXPECT_THAT(message(corridor.problem(), {}), HasSubstr("cell 2 in frame 1 is 1.5"));
+  EXPECT_THAT(message(corridor.problem(), {.depth = 1}), HasSubstr("cell 2 in frame 1 is 1.5"));
 }
 
 TEST(Linker, StopsWhenAsked) {
@@ -217,7 +266,7 @@ TEST(Linker, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
   RunControl control;
   control.stop = &stop;
-  EXPECT_THAT(testing::MessageOf(LinkPaths(corridor.problem(), {}, control)),
+  EXPECT_THAT(testing::MessageOf(LinkPaths(corridor.problem(), {.depth = 1}, control)),
               HasSubstr("interrupted"));
 }
 
@@ -231,7 +280,7 @@ TEST(Linker, ReportsProgressUpToTheEnd) {
     EXPECT_LE(done, total);
     last = done == total ? total : done;
   };
-  ASSERT_TRUE(LinkPaths(corridor.problem(), {}, control));
+  ASSERT_TRUE(LinkPaths(corridor.problem(), {.depth = 1}, control));
   EXPECT_EQ(last, 8);
 }
 

@@ -36,28 +36,26 @@ Status CheckSizes(const StreamGrid& grid) {
   return {};
 }
 
-/// Cells per frame that options.max_speed_mps allows.
-Result<std::optional<double>> Reach(const StreamGrid& grid, const LinkingOptions& options) {
-  if (!options.max_speed_mps) return std::optional<double>();
+/// Cells per frame, as the crow flies, that max_speed allows.
+Result<double> Reach(const StreamGrid& grid, double max_speed_mps) {
   if (!(grid.cell_m > 0) || !(grid.frames_per_second > 0)) {
     return Fail(
-        "linking: max_speed needs the size of cells and the frame rate, and they are {} m and {} "
-        "frames per second; give linking.depth instead",
+        "linking.max_speed needs the size of cells and the frame rate, and they are {} m and {} "
+        "frames per second; give linking.depth in its place",
         grid.cell_m, grid.frames_per_second);
   }
-  const double reach = *options.max_speed_mps / grid.frames_per_second / grid.cell_m;
+  const double reach = max_speed_mps / grid.frames_per_second / grid.cell_m;
   if (reach > kMaxDepth) {
     return Fail(
         "linking.max_speed is {} m/s, {:.3g} cells of {} m per frame; at most {} cells are "
-        "possible: lower it or use larger cells",
-        *options.max_speed_mps, reach, grid.cell_m, kMaxDepth);
+        "possible: lower it, use larger cells or give linking.depth in its place",
+        max_speed_mps, reach, grid.cell_m, kMaxDepth);
   }
-  return std::optional(reach);
+  return reach;
 }
 
-/// `reach`: cells per frame as the crow flies, if that limits people instead of network.depth.
+/// To all cells within network.depth; with a `reach`, to those as near as that, and the neighbours.
 void MakeMoves(std::optional<double> reach, double movement_cost, Network& network) {
-  if (reach) network.depth = std::max(1, static_cast<int>(*reach));
   const int depth = network.depth;
   for (int rows = -depth; rows <= depth; ++rows) {
     for (int columns = -depth; columns <= depth; ++columns) {
@@ -91,11 +89,14 @@ StreamGrid GridOf(const LinkingProblem& problem) {
 Result<Network> MakeNetwork(const StreamGrid& grid, const LinkingOptions& options) {
   VANTAGE_RETURN_IF_ERROR(ValidateOptions(options, "linking"));
   VANTAGE_RETURN_IF_ERROR(CheckSizes(grid));
-  VANTAGE_ASSIGN_OR_RETURN(const std::optional<double> reach, Reach(grid, options));
+  std::optional<double> reach;
+  if (!options.depth) {
+    VANTAGE_ASSIGN_OR_RETURN(reach, Reach(grid, options.max_speed_mps));
+  }
   Network network;
   network.columns = grid.columns;
   network.rows = grid.rows;
-  network.depth = options.depth;
+  network.depth = reach ? std::max(1, static_cast<int>(*reach)) : *options.depth;
   MakeMoves(reach, options.movement_cost, network);
   const Cost birth_cost = ToUnits(options.birth_cost);
   network.entry_cost = birth_cost / 2;

@@ -39,7 +39,7 @@ struct StreamGrid {
   int rows = 0;
   std::span<const std::uint8_t> access;
   std::span<const std::uint8_t> obstacle;
-  /// Needed with LinkingOptions::max_speed_mps alone.
+  /// Needed, > 0, unless LinkingOptions::depth is given.
   double cell_m = 0;
   double frames_per_second = 0;
 };

@@ -226,7 +226,7 @@ TEST(StreamLinker, GivesIdsOnceAndKeepsThem) {
   const LinkingProblem problem = scene.problem();
   Result<StreamLinker> linker = StreamLinker::Create(
       {.columns = problem.columns, .rows = problem.rows, .access = problem.access, .obstacle = {}},
-      {}, 20);
+      {.depth = 1}, 20);
   ASSERT_TRUE(linker);
   const auto cells = static_cast<std::size_t>(problem.columns * problem.rows);
   std::map<PathId, std::pair<std::int64_t, CellIndex>> last;  // frame and cell
@@ -276,7 +276,7 @@ TEST(StreamLinker, RefusesWhatIsNotAStream) {
                   {.columns = 3, .rows = 3, .access = access, .obstacle = {}}, {}, 1)),
               HasSubstr("access has 6 values; it must have 9"));
 
-  Result<StreamLinker> linker = StreamLinker::Create(grid, {.birth_cost = 1}, 1);
+  Result<StreamLinker> linker = StreamLinker::Create(grid, {.depth = 1, .birth_cost = 1}, 1);
   ASSERT_TRUE(linker);
   std::vector<float> map(6, 0.01F);
   map[4] = std::numeric_limits<float>::quiet_NaN();

@@ -96,7 +96,7 @@ bool Blocked(const Instance& instance, int cell) {
 bool MayMove(const Instance& instance, int from, int to) {
   const int columns = std::abs(from % instance.columns - to % instance.columns);
   const int rows = std::abs(from / instance.columns - to / instance.columns);
-  return std::max(columns, rows) <= instance.options.depth;
+  return std::max(columns, rows) <= *instance.options.depth;
 }
 
 std::int64_t MoveUnits(const Instance& instance, int from, int to) {

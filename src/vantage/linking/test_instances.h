@@ -52,7 +52,8 @@ struct Limits {
 };
 
 /// Sizes, maps (noise of every strength, sure people with costs at the clip, many ties, rare and
-/// weak people), access, obstacles and options, all at random.
+/// weak people), access, obstacles and options, all at random; the depth is
+/// given.
 Instance RandomInstance(unsigned seed, const Limits& limits = {});
 
 /// Costs in integer units of 2^-20, as they are defined.
