@@ -34,6 +34,7 @@ using testing::SceneOptions;
 struct Case {
   Case(const SceneOptions& scene_options, int depth) : scene(scene_options) {
     options.depth = depth;
+    options.movement_cost = 2;
   }
   RecordedScene scene;
   LinkingOptions options;

@@ -102,6 +102,7 @@ TEST(Link, AccessIsTheBorderDoorsAListOrAnywhere) {
 
 TEST(Link, NobodyStandsInObstacles) {
   SmallMaps small;
+  small.linking = "movement_cost = 2.0";
   small.AddWalker(5);
   const auto free = small.Link();
   EXPECT_EQ(free["tracks"], 1);
@@ -172,6 +173,7 @@ TEST(Link, TheExtensionIsLinkedOnAndCroppedAfter) {
 
 TEST(LinkExplain, WritesPicturesAndFigures) {
   SmallMaps small;
+  small.linking = "movement_cost = 2.0";
   small.AddWalker(2);
   small.AddWalker(7);
   small.Put(20, 8, 6, 0.9F);  // beside the second one

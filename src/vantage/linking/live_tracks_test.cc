@@ -132,10 +132,11 @@ TEST(LiveTracks, ALagOfTheWholeRecordingGivesWhatTheWholeRecordingGives) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     if (seed == 7) continue;  // two optimal answers: an exchange of two people that costs nothing
     const OccupancyMaps maps = Crowd(seed, 2 + static_cast<int>(seed), 90);
-    const auto whole = LinkMaps(maps, {.inside_cost = kInsideCostOfStreams}, {});
+    const LinkingOptions linking{.movement_cost = 2, .inside_cost = kInsideCostOfStreams};
+    const auto whole = LinkMaps(maps, linking, {});
     ASSERT_TRUE(whole) << MessageOf(whole);
     for (const double lag_secs : {9.0, 500.0}) {
-      const Played played = Play(maps, lag_secs);
+      const Played played = Play(maps, lag_secs, {}, linking);
       EXPECT_EQ(played.ToTracks(), whole->tracks) << seed;
       EXPECT_NEAR(played.report.linking.cost, whole->report.linking.cost, 1e-9);
       EXPECT_EQ(played.report.linking.paths, whole->report.linking.paths);
@@ -150,8 +151,8 @@ TEST(LiveTracks, ALagOfTheWholeRecordingGivesWhatTheWholeRecordingGives) {
 TEST(LiveTracks, PositionsComeAFixedLagAfterTheirFrameAndInOrder) {
   const OccupancyMaps maps = Crowd(3, 9, 120);
   for (const int lag_frames : {1, 2, 4, 13, 40}) {
-    const Played played =
-        Play(maps, lag_frames / 10.0, {.min_length_secs = 0.2}, {.birth_cost = 0});
+    const Played played = Play(maps, lag_frames / 10.0, {.min_length_secs = 0.2},
+                               {.birth_cost = 0, .movement_cost = 2});
     EXPECT_EQ(played.report.lag_frames, lag_frames);
     EXPECT_EQ(played.report.linking.final_frames, 120);
     EXPECT_GT(played.rows.size(), 100u) << lag_frames;

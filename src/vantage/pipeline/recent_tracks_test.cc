@@ -32,9 +32,10 @@ OccupancyMaps TwoPeople(int frames) {
 TEST(RecentTracks, AreThoseOfTheLastMapsHoweverTheyCome) {
   constexpr int kWindow = 12;
   const OccupancyMaps all = TwoPeople(50);
+  const LinkingOptions linking{.movement_cost = 2};
   const std::size_t cells = static_cast<std::size_t>(all.grid.count());
   for (const std::size_t step : {1U, 8U, 30U}) {
-    auto recent = RecentTracks::Create(all, kWindow, {}, {}, {}, {});
+    auto recent = RecentTracks::Create(all, kWindow, linking, {}, {}, {});
     ASSERT_TRUE(recent) << MessageOf(recent);
     for (std::size_t frame = 0; frame < 50; frame += step) {
       const std::size_t end = std::min<std::size_t>(frame + step, 50);
@@ -45,7 +46,7 @@ TEST(RecentTracks, AreThoseOfTheLastMapsHoweverTheyCome) {
       window.first_frame = 100 + static_cast<FrameIndex>(first);
       window.values.assign(all.values.begin() + static_cast<std::ptrdiff_t>(first * cells),
                            all.values.begin() + static_cast<std::ptrdiff_t>(end * cells));
-      const auto expected = LinkMaps(window, {}, {.smoothing_secs = 0, .min_length_secs = 0});
+      const auto expected = LinkMaps(window, linking, {.smoothing_secs = 0, .min_length_secs = 0});
       const auto tracks = recent->Link();
       ASSERT_TRUE(expected && tracks) << MessageOf(tracks);
       // Before the window is full, a path that may go on has not paid for its end: found sooner.
