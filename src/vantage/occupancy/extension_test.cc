@@ -30,7 +30,7 @@ Polygon Square(double half_m) {
 }
 
 ExtensionReport Choose(const Polygon& area, const std::vector<Camera>& cameras,
-                       const GridOptions& grid = {}, const PersonOptions& person = {},
+                       const GridOptions& grid = {.cell_m = 0.5}, const PersonOptions& person = {},
                        Visibility visibility = Visibility::kCentre) {
   const auto report = ChooseExtension(area, grid, cameras, person, visibility);
   EXPECT_TRUE(report) << MessageOf(report);
@@ -135,7 +135,8 @@ TEST(ChooseExtension, FewCellsUnderACameraStraightAbove) {
 TEST(ChooseExtension, ALowCameraNeedsAllThatIsAllowed) {
   const Camera low = WideCamera({-20, 0, 1.2}, {0, 0, 1.2});
   for (const double most_m : {0.0, 2.0, 7.3}) {
-    const ExtensionReport report = Choose(Square(4), {low}, {.max_extension_m = most_m});
+    const ExtensionReport report =
+        Choose(Square(4), {low}, {.cell_m = 0.5, .max_extension_m = most_m});
     for (const std::size_t side : {0, 1}) {
       EXPECT_EQ(report.sides[side].extension_m, std::floor(most_m / 0.5) * 0.5);
       EXPECT_EQ(report.sides[side].reason, ExtensionReason::kBounded);
@@ -156,7 +157,7 @@ TEST(ChooseExtension, NoCellsWhereNobodyIsSeen) {
   // With the end of its view 2 m behind the area, the extension ends there too.
   const auto end = narrow.WorldFromImage({319.5, 0}, 0.9).value();
   const Polygon before = Polygon::Rectangle({-1, -1}, {1, end.y() - 2}).value();
-  const ExtensionReport seen = Choose(before, {narrow}, {.covering_share = 0.05});
+  const ExtensionReport seen = Choose(before, {narrow}, {.cell_m = 0.5, .covering_share = 0.05});
   EXPECT_EQ(seen.sides[3].reason, ExtensionReason::kUnseen);
   EXPECT_GT(seen.sides[3].extension_m, 1);
   EXPECT_LT(seen.sides[3].extension_m, 3.1);
@@ -196,8 +197,10 @@ TEST(ChooseExtension, TheOrderOfCamerasChangesNothingButTheirNumbers) {
   const Camera south = WideCamera({1, -12, 6}, {0, 0, 0});
   const Camera east = WideCamera({15, 2, 4}, {0, 0, 0});
   const Camera away = WideCamera({300, 300, 4}, {400, 400, 0});  // sees none of it
-  const ExtensionReport two = Choose(Square(5), {south, east}, {.max_extension_m = 20});
-  const ExtensionReport three = Choose(Square(5), {east, away, south}, {.max_extension_m = 20});
+  const ExtensionReport two =
+      Choose(Square(5), {south, east}, {.cell_m = 0.5, .max_extension_m = 20});
+  const ExtensionReport three =
+      Choose(Square(5), {east, away, south}, {.cell_m = 0.5, .max_extension_m = 20});
   EXPECT_EQ(two.extension(), three.extension());
   for (std::size_t side = 0; side < 4; ++side) {
     EXPECT_EQ(two.sides[side].reason, three.sides[side].reason);
@@ -214,7 +217,8 @@ TEST(ChooseExtension, TheOrderOfCamerasChangesNothingButTheirNumbers) {
 TEST(ChooseExtension, GrowsWithTheHeightOfPeopleAndShrinksWithTheShareAndTheCamera) {
   const auto along = [](double up_m, double height_m, double share) {
     const Camera camera = WideCamera({-14, 0, up_m}, {0, 0, 0});
-    return Choose(Square(5), {camera}, {.max_extension_m = 30, .covering_share = share},
+    return Choose(Square(5), {camera},
+                  {.cell_m = 0.5, .max_extension_m = 30, .covering_share = share},
                   {.height_m = height_m})
         .extension();
   };

@@ -34,6 +34,8 @@ name = "one"
 frames_per_second = 4.0
 [area]
 polygon = [[-4.0, -3.0], [4.0, -3.0], [4.0, 3.0], [-4.0, 3.0]]
+[grid]
+cell = 0.5
 )" + person + R"(
 [[cameras]]
 name = "south"

@@ -74,7 +74,7 @@ Scene SceneOf(const std::filesystem::path& folder, const Polygon& area,
   for (const Vector2d& corner : area.corners_m()) {
     toml += fmt::format("[{:.4f}, {:.4f}], ", corner.x(), corner.y());
   }
-  toml += "]\n";
+  toml += "]\n[grid]\ncell = 0.5\n";
   for (const int view : views) {
     toml += fmt::format(
         "[[cameras]]\nname = \"View_00{0}\"\nsource = {{ masks = \"View_00{0}/%06d.png\" }}\n"

@@ -109,6 +109,8 @@ Outcome MeasureBoxes(Visibility rule, std::optional<double> extension_m) {
   scene.grid.cell_m = 0.3;
   scene.grid.extension_m = extension_m;
   StageOptions options;
+  options.linking.depth = 1;
+  options.linking.movement_cost = 2;
   options.occupancy.visibility = rule;
   const TrackingResult result = TrackPeople(scene, options, 1).value();
   Tracks detections;
@@ -144,6 +146,7 @@ Table MeasureSilhouettes(const std::vector<int>& views) {
   return MeasureAll(title, [&](Visibility rule, std::optional<double> extension_m) -> Outcome {
     Scene scene;
     scene.area = area;
+    scene.grid.cell_m = pets.scene.grid.cell_m;
     scene.cameras = pets.scene.cameras;
     scene.grid.extension_m = extension_m;
     OccupancyOptions options;

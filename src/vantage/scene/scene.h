@@ -50,7 +50,7 @@ struct SceneCamera {
 /// Grid and extension of the area (table [grid]).
 struct GridOptions {
   /// Side of a cell in metres, 0.02 <= cell <= 10.
-  double cell_m = 0.5;
+  double cell_m = 0.3;
   /// The grid grows by this much around the area, 0 <= extension <= 100; none: `auto`, on each side
   /// by as much as people outside need who cover cells inside (occupancy/extension.h),
   std::optional<double> extension_m = std::nullopt;

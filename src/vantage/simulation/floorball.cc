@@ -151,7 +151,6 @@ Result<Stage> MakeFloorball(const PresetOptions& options) {
   Stage stage;
   stage.name = "floorball";
   stage.frames_per_second = FloorballGame::kFramesPerSecond;
-  stage.cell_m = 0.3;  // most accurate of 0.2 to 0.5 m; 0.3 m a frame is 6 m/s
   stage.frames = options.frames.value_or(kFrames);
   VANTAGE_ASSIGN_OR_RETURN(stage.area, Polygon::Rectangle({-kRinkHalfLength_m, -kRinkHalfWidth_m},
                                                           {kRinkHalfLength_m, kRinkHalfWidth_m}));

@@ -65,7 +65,7 @@ Scene SceneOf(const Stage& stage) {
   scene.area = stage.area;
   scene.doors = stage.doors;
   scene.obstacles = stage.obstacles;
-  scene.grid.cell_m = stage.cell_m;
+  if (stage.cell_m) scene.grid.cell_m = *stage.cell_m;
   for (const StageCamera& camera : stage.cameras) {
     scene.cameras.push_back(
         {.name = camera.name,

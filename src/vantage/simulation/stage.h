@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -124,7 +125,7 @@ struct Stage {
   Polygon area;
   std::vector<Polygon> doors;
   std::vector<Polygon> obstacles;
-  double cell_m = 0.5;  ///< for the scene file
+  std::optional<double> cell_m;  ///< for the scene file; none: the default of scenes
   std::vector<StageCamera> cameras;
   std::vector<Material> materials;
   /// What never moves. Ground, walls and markings are blocks, too; the ground's upper face is z = 0
