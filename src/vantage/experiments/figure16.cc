@@ -15,7 +15,7 @@ namespace {
 
 /// From the thesis's least to its largest, metres.
 std::vector<double> CellSizes(const Study& study) {
-  if (study.quick) return {0.4, 0.5, 1, 3};
+  if (study.quick) return {0.3, 0.5, 1, 3};
   return {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1, 1.25, 1.5, 2, 2.5, 3};
 }
 
@@ -28,10 +28,9 @@ struct Sweep {
   std::vector<CellPtr> cells = {};
 };
 
-std::size_t DefaultOf(const Sweep& sweep) {
-  const double default_m = GridOptions().cell_m;
-  return static_cast<std::size_t>(std::ranges::find(sweep.sizes_m, default_m) -
-                                  sweep.sizes_m.begin());
+/// The thesis's size, one of every sweep.
+std::size_t ThesisOf(const Sweep& sweep) {
+  return static_cast<std::size_t>(std::ranges::find(sweep.sizes_m, 0.5) - sweep.sizes_m.begin());
 }
 
 /// MOTA, MOTP and time over the size; the thesis has MOTA over MOTP, sizes as colours.
@@ -82,7 +81,7 @@ Status Report(const Sweep& sweep, const CellResults& results, ReportPage& page,
   for (std::size_t i = best; i < rows.size(); ++i) {
     if (mota(i) >= mota(best) - kWorthIt) largest = i;
   }
-  const std::size_t used = DefaultOf(sweep);
+  const std::size_t used = ThesisOf(sweep);
   report.findings.push_back(
       {.thesis = "A cell of 0.5 m is a good compromise between 0.3 and 3 m",
        .here = fmt::format(
