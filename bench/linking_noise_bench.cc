@@ -72,11 +72,11 @@ std::vector<Candidate> ExactCandidates() {
   std::vector<Candidate> candidates;
   for (const int depth : {1, 2}) {
     for (const double movement_cost : {0.25, 0.5, 1.0, 2.0}) {
-      candidates.push_back({fmt::format("depth {}, movement cost {}", depth, movement_cost),
+      candidates.push_back({fmt::format("depth {}, movement cost {} a cell", depth, movement_cost),
                             [=](const NoisyRecording& recording) {
                               LinkingOptions options;
                               options.depth = depth;
-                              options.movement_cost = movement_cost;
+                              options.movement_cost = movement_cost * depth;
                               return LinkMaps(recording.maps, options, {}).value().tracks;
                             }});
     }

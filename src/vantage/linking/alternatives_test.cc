@@ -123,7 +123,8 @@ class Enumeration {
       if (std::max(std::abs(columns), std::abs(rows)) > *instance_.options.depth) continue;
       if (Taken(follower)) continue;
       next = follower;
-      solution_.cost = here + instance_.options.movement_cost * std::hypot(columns, rows);
+      solution_.cost = here + instance_.options.movement_cost /
+                                  std::max(*instance_.options.depth, 1) * std::hypot(columns, rows);
       Continue(follower, then);
     }
     next = kFree;
@@ -348,7 +349,7 @@ TEST(Alternatives, HoldOnAGridOfUsualSize) {
   for (int cell = 0; cell < 600; ++cell) {
     instance.access.push_back(cell % 30 == 0 || cell % 30 == 29 || cell < 30 || cell >= 570);
   }
-  instance.options = {.depth = 2, .birth_cost = 5, .movement_cost = 0.1};
+  instance.options = {.depth = 2, .birth_cost = 5, .movement_cost = 0.2};
   const auto optimum = LinkPaths(instance.problem(), instance.options);
   ASSERT_GT(optimum->paths.size(), 3U);
   double cost = 0;

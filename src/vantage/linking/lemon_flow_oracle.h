@@ -25,8 +25,8 @@ struct PlainLinkingProblem {
   const std::uint8_t* access;
   const std::uint8_t* obstacle;  ///< null: none
   int depth;
-  double birth_cost, clip, movement_cost;
-  double inside_cost;  ///< below 0: never
+  double birth_cost, clip, movement_cost;  // the last per cell
+  double inside_cost;                      ///< below 0: never
   int max_paths;
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "vantage/linking/lemon_oracle.h"
 
+#include <algorithm>
+
 namespace vantage::testing {
 
 LemonAnswer SolveWithLemon(const LinkingProblem& problem, const LinkingOptions& options,
@@ -16,7 +18,7 @@ LemonAnswer SolveWithLemon(const LinkingProblem& problem, const LinkingOptions& 
                           .depth = options.depth.value(),
                           .birth_cost = options.birth_cost,
                           .clip = options.clip,
-                          .movement_cost = options.movement_cost,
+                          .movement_cost = options.movement_cost / std::max(*options.depth, 1),
                           .inside_cost = options.inside_cost.value_or(-1),
                           .max_paths = options.max_paths},
       algorithm);

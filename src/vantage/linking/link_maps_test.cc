@@ -77,7 +77,7 @@ TEST(LinkMaps, OnePersonWhoWalksAcrossIsOneTrackInsideTheArea) {
   maps.first_frame = 100;
   for (int frame = 0; frame < 24; ++frame) Put(maps, frame, frame / 2, 2, 0.95F);
   const auto result =
-      LinkMaps(maps, {.movement_cost = 2}, {.smoothing_secs = 0, .min_length_secs = 0});
+      LinkMaps(maps, {.movement_cost = 1}, {.smoothing_secs = 0, .min_length_secs = 0});
   ASSERT_TRUE(result) << testing::MessageOf(result);
   ASSERT_EQ(result->tracks.size(), 1U);
   const Track& track = result->tracks[0];

@@ -68,8 +68,9 @@ void VisitOptions(LinkingOptions& options, OptionVisitor& visitor) {
                  options.birth_cost, Range::Between(0, 1e6));
   visitor.Number({"clip", "", "Probabilities are clipped to [clip, 1 - clip]"}, options.clip,
                  Range::Inside(0, 0.5));
-  visitor.Number({"movement_cost", "1/cell", "Cost of a move per cell of distance"},
-                 options.movement_cost, Range::Between(0, 1000));
+  visitor.Number(
+      {"movement_cost", "", "Cost of moving at max_speed, or by depth; in proportion below"},
+      options.movement_cost, Range::Between(0, 1000));
   visitor.NumberOr({"inside_cost", "",
                     "Cost of a path's beginning, and of its end, where people may not appear or "
                     "vanish; auto: 45 for streams, never for recordings"},

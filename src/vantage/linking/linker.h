@@ -24,8 +24,8 @@ enum class AccessRule {
 /// Options of the linking stage (algorithms.md section 4; Berclaz et al. 2011).
 struct LinkingOptions {
   /// Metres per second that a person may move at most, > 0: a fast sprint. Steps to all cells whose
-  /// centre is as near as that in one frame, and always to the 8 neighbours; more than 10 cells per
-  /// frame are an error.
+  /// centre is as near as that in one frame, always to the 8 neighbours, and never more than 10
+  /// cells along the axes.
   double max_speed_mps = 7;
   /// In place of max_speed, which then counts for nothing: cells that a person may move per frame,
   /// Chebyshev distance, 0 <= depth <= 10.
@@ -36,12 +36,15 @@ struct LinkingOptions {
   /// Probabilities are clipped to [clip, 1 - clip], 0 < clip < 0.5, before the cost
   /// -log(p / (1 - p)).
   double clip = 1e-6;
-  /// Cost of a move per cell of Euclidean distance, >= 0: people who meet keep to their own,
-  /// shorter ways. 0, as in the paper, leaves identities to chance there. Chosen on PETS 2009 S2.L1
-  /// (View_001's video and boxes of seven views, 7 frames per second) and simulated floorball and
-  /// campus (20 per second) at cells of 0.3 m, where of 1.2 to 4.8 the larger gave fewer switches;
-  /// no recording was held out.
-  double movement_cost = 4;
+  /// Cost of moving as far in one frame as max_speed (or depth, along an axis) allows, >= 0; of
+  /// shorter moves as much less as they are shorter. People who meet keep to their own, shorter
+  /// ways; 0, as in the paper, leaves identities to chance there. In proportion to speed it means
+  /// the same at every frame rate and size of cells: who is surely seen earns -log(clip) in every
+  /// frame, about 14, and even at full speed pays less. Chosen on simulated floorball (20 frames
+  /// per second), where of 2 to 8 the larger gave fewer switches, and PETS 2009 S2.L1 (View_001's
+  /// video, boxes of seven views, and the simulated campus; 7 per second), where 4 to 20 differ by
+  /// chance and 33 loses people; no recording was held out.
+  double movement_cost = 7;
   /// What it costs a path, >= 0, to begin where people may not appear, and again to end where they
   /// may not vanish (see access). None: it cannot be for recordings; for streams 45 (a cost of
   /// kInsideCostOfStreams), since whoever cannot be told near an entrance in time would be lost

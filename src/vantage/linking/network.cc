@@ -44,22 +44,17 @@ Result<double> Reach(const StreamGrid& grid, double max_speed_mps) {
         "frames per second; give linking.depth in its place",
         grid.cell_m, grid.frames_per_second);
   }
-  const double reach = max_speed_mps / grid.frames_per_second / grid.cell_m;
-  if (reach > kMaxDepth) {
-    return Fail(
-        "linking.max_speed is {} m/s, {:.3g} cells of {} m per frame; at most {} cells are "
-        "possible: lower it, use larger cells or give linking.depth in its place",
-        max_speed_mps, reach, grid.cell_m, kMaxDepth);
-  }
-  return reach;
+  return max_speed_mps / grid.frames_per_second / grid.cell_m;
 }
 
 /// To all cells within network.depth; with a `reach`, to those as near as that, and the neighbours.
+/// A move of `reach` or `depth` costs movement_cost.
 void MakeMoves(std::optional<double> reach, double movement_cost, Network& network) {
+  const double cost_per_cell = movement_cost / reach.value_or(std::max(network.depth, 1));
   const int depth = network.depth;
   for (int rows = -depth; rows <= depth; ++rows) {
     for (int columns = -depth; columns <= depth; ++columns) {
-      const Cost cost = ToUnits(movement_cost * std::sqrt(columns * columns + rows * rows));
+      const Cost cost = ToUnits(cost_per_cell * std::sqrt(columns * columns + rows * rows));
       network.move_costs.push_back(cost);
       const bool neighbour = std::max(std::abs(rows), std::abs(columns)) <= 1;
       if (reach && !neighbour && std::hypot(columns, rows) > *reach) continue;
@@ -96,7 +91,8 @@ Result<Network> MakeNetwork(const StreamGrid& grid, const LinkingOptions& option
   Network network;
   network.columns = grid.columns;
   network.rows = grid.rows;
-  network.depth = reach ? std::max(1, static_cast<int>(*reach)) : *options.depth;
+  network.depth =
+      reach ? static_cast<int>(std::clamp<double>(*reach, 1, kMaxDepth)) : *options.depth;
   MakeMoves(reach, options.movement_cost, network);
   const Cost birth_cost = ToUnits(options.birth_cost);
   network.entry_cost = birth_cost / 2;

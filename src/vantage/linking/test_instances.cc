@@ -100,7 +100,7 @@ bool MayMove(const Instance& instance, int from, int to) {
 }
 
 std::int64_t MoveUnits(const Instance& instance, int from, int to) {
-  return Units(instance.options.movement_cost *
+  return Units(instance.options.movement_cost / std::max(*instance.options.depth, 1) *
                std::hypot(from % instance.columns - to % instance.columns,
                           from / instance.columns - to / instance.columns));
 }
