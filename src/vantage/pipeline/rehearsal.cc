@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kQueue = 4;  // samples that wait for the next stage
 // Without a rehearsal: so much is gone over, and measured at this interval.
-constexpr double kUnrehearsed_s = 30;
+constexpr double kUnrehearsed_s = 15;
 constexpr double kMeasured_s = 0.5;
 
 /// What the first pass does.

@@ -25,7 +25,7 @@ struct Rehearsed {
 /// the lengths of PersonOptions are used, the width with CellAllowance_m.
 ///
 /// Where there is to be no rehearsal people are measured all the same: in samples of masks that are
-/// delivered ready, otherwise in every half second of the first 30 s, all of whose frames are
+/// delivered ready, otherwise in every half second of the first 15 s, all of whose frames are
 /// judged for that and forgotten. Where there is neither anything to learn nor to measure, nothing
 /// is read. The sources are opened once more for what follows. What comes out does not depend on
 /// `threads`. Fails as the sources do.

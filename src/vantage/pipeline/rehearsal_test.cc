@@ -194,7 +194,7 @@ TEST_F(ColorCamera, ForgetsWhatItLearntWhereThereIsNoRehearsal) {
   auto measured = Rehearse(Load(), {}, 2);  // too short
   ASSERT_TRUE(measured) << MessageOf(measured);
   EXPECT_EQ(measured->stream.subtractors()[0]->report().rehearsed, 0);
-  EXPECT_EQ(measured->person.measured->frames, 40);
+  EXPECT_EQ(measured->person.measured->frames, 30);
   EXPECT_EQ(cv::countNonZero(FirstMask(*measured)), 0);
 }
 
