@@ -150,9 +150,9 @@ TEST(Link, CostsAndTheCapDecideHowManyPaths) {
   small.linking = "birth_cost = 30.0\nmax_paths = 3";
   EXPECT_EQ(small.Link()["paths"], 3);
   EXPECT_EQ(small.Link("--max-paths 2")["paths"], 2);
-  // 15 moves of one cell each.
+  // 15 moves of one cell each; 7 m/s is 1.4 cells in a frame.
   const double still = small.Link("--max-paths 1 --movement-cost 0")["cost"];
-  EXPECT_NEAR(small.Link("--max-paths 1 --movement-cost 1")["cost"], still + 15, 1e-3);
+  EXPECT_NEAR(small.Link("--max-paths 1 --movement-cost 1.4")["cost"], still + 15, 1e-3);
 }
 
 TEST(Link, TheExtensionIsLinkedOnAndCroppedAfter) {

@@ -33,6 +33,7 @@ struct DrawnRecording {
 
   static Scene MakeScene() {
     Scene scene;
+    scene.grid.cell_m = 0.5;  // smaller ones make two people of a drawn one
     scene.name = "drawn";
     scene.frames_per_second = 10;
     scene.area = Polygon::Rectangle({-4, -3}, {4, 3}).value();
