@@ -36,14 +36,9 @@ std::string CellNameOf(const GhostCase& on, const std::string& rule) {
 }
 
 Json InputsOf(const GhostCase& on, const Json& data, const RuleVariants& variants) {
-  Json inputs = {{"data", data},
-                 {"camera", on.camera},
-                 {"begin", on.span.begin},
-                 {"first", on.span.first},
-                 {"last", on.span.last},
-                 {"lead", on.span.lead},
-                 {"most", on.span.most},
-                 {"variants", Json::array()}};
+  Json inputs = {{"data", data},           {"camera", on.camera},      {"begin", on.span.begin},
+                 {"first", on.span.first}, {"last", on.span.last},     {"lead", on.span.lead},
+                 {"most", on.span.most},   {"variants", Json::array()}};
   for (const GhostVariant& variant : variants) {
     RecordOptions(variant.options, inputs["variants"].emplace_back());
   }
