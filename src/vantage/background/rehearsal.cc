@@ -39,7 +39,7 @@ RehearsalPlan SampleBeginning(const RehearsalOptions& options,
 RehearsalPlan PlanRehearsal(const RehearsalOptions& options,
                             std::optional<std::int64_t> frame_count, double frames_per_second) {
   const double least_frames = options.rehearsal_secs * frames_per_second / 2;
-  if (frame_count && static_cast<double>(*frame_count) < least_frames) return {};
+  if (!frame_count || static_cast<double>(*frame_count) < least_frames) return {};
   return SampleBeginning(options, frame_count, frames_per_second);
 }
 

@@ -35,7 +35,8 @@ struct RehearsalPlan {
 RehearsalPlan SampleBeginning(const RehearsalOptions& options,
                               std::optional<std::int64_t> frame_count, double frames_per_second);
 
-/// The same where there is to be a rehearsal; otherwise no samples.
+/// The same where there is to be a rehearsal; otherwise no samples. What does not know its length,
+/// such as a live stream, would not begin again.
 RehearsalPlan PlanRehearsal(const RehearsalOptions& options,
                             std::optional<std::int64_t> frame_count, double frames_per_second);
 

@@ -31,11 +31,11 @@ TEST(SampleBeginning, ReachesTheEndOfTheWindow) {
   EXPECT_EQ(planned(0, 20).second, 0);
 }
 
-TEST(PlanRehearsal, NotOfShortRecordings) {
+TEST(PlanRehearsal, NeitherOfShortRecordingsNorOfStreams) {
   const RehearsalOptions options{.rehearsal_secs = 60, .rehearsal_frames = 100};
   EXPECT_EQ(PlanRehearsal(options, 599, 20).samples, 0);
   EXPECT_EQ(PlanRehearsal(options, 600, 20).samples, 60);
-  EXPECT_EQ(PlanRehearsal(options, std::nullopt, 20).samples, 100);
+  EXPECT_EQ(PlanRehearsal(options, std::nullopt, 20).samples, 0);
   EXPECT_EQ(PlanRehearsal({.rehearsal_secs = 0}, 1000, 20).samples, 0);
 }
 
