@@ -180,6 +180,11 @@ TEST(Linker, PeopleMoveAtMostAsFastAsAllowed) {
   // However slow, people may go to the next cell at some time.
   corridor.Set(1, 2, 0.99F);
   EXPECT_NEAR(cost(2.5), 1 - 2 * std::log(99) + 4, 1e-4);
+  // Nor do speeds beside 0 overflow.
+  EXPECT_EQ(cost(1e-300), 0);
+  EXPECT_NEAR(
+      Link(problem, {.max_speed_mps = 1e-320, .birth_cost = 1, .movement_cost = 0}).report.cost,
+      1 - 2 * std::log(99), 1e-4);
 }
 
 TEST(Linker, TheDefaultIsASpeedAndNeedsCellsAndFrameRate) {

@@ -14,6 +14,8 @@ namespace {
 constexpr int kMaxSide = 32'767;  // columns and rows are kept in 16 bits
 constexpr std::int64_t kMaxCells = std::int64_t{1} << 27;
 constexpr int kMaxDepth = 10;
+// What a move costs at most, so that sums over a recording stay exact: only speeds near 0 ask more.
+constexpr double kMaxMoveCost = 15'000;
 
 Status CheckSizes(const StreamGrid& grid) {
   if (grid.columns < 1 || grid.rows < 1) {
@@ -54,7 +56,10 @@ void MakeMoves(std::optional<double> reach, double movement_cost, Network& netwo
   const int depth = network.depth;
   for (int rows = -depth; rows <= depth; ++rows) {
     for (int columns = -depth; columns <= depth; ++columns) {
-      const Cost cost = ToUnits(cost_per_cell * std::sqrt(columns * columns + rows * rows));
+      const double length = std::sqrt(columns * columns + rows * rows);
+      const Cost cost = length > 0 && movement_cost > 0
+                            ? ToUnits(std::min(cost_per_cell * length, kMaxMoveCost))
+                            : 0;
       network.move_costs.push_back(cost);
       const bool neighbour = std::max(std::abs(rows), std::abs(columns)) <= 1;
       if (reach && !neighbour && std::hypot(columns, rows) > *reach) continue;
