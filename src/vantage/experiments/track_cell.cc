@@ -27,7 +27,8 @@ Json Recorded(const Options& options) {
 Result<Json> WriteMasks(const TrackRecording& recording, const BackgroundOptions& background,
                         const CellRun& run) {
   VANTAGE_ASSIGN_OR_RETURN(const Scene scene, recording.scene(run.folder));
-  VANTAGE_ASSIGN_OR_RETURN(Rehearsed rehearsed, Rehearse(scene, background, run.threads));
+  VANTAGE_ASSIGN_OR_RETURN(Rehearsed rehearsed,
+                           Rehearse(scene, background, run.threads, run.control));
   MaskStream& stream = rehearsed.stream;
   std::vector<MaskWriter> writers;
   for (const SceneCamera& camera : scene.cameras) {
