@@ -61,6 +61,10 @@ Status MaskStream::Rewind(const Scene& scene, const BackgroundOptions& options, 
   return keep_learnt ? Status() : MakeSubtractors(scene, options);
 }
 
+bool MaskStream::learns() const {
+  return std::ranges::any_of(subtractors_, [](const auto& camera) { return camera.has_value(); });
+}
+
 Result<bool> MaskStream::Read(int camera, std::int64_t frame, cv::Mat& picture) {
   if (frame == limit_) return false;
   return reader_.ReadCamera(static_cast<std::size_t>(camera), picture);

@@ -53,6 +53,8 @@ class MaskStream {
   const std::vector<std::optional<BackgroundSubtractor>>& subtractors() const {
     return subtractors_;
   }
+  /// Whether any camera learns a background.
+  bool learns() const;
 
  private:
   explicit MaskStream(MultiCameraReader reader) : reader_(std::move(reader)) {}

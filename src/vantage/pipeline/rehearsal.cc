@@ -30,10 +30,8 @@ struct Pass {
 };
 
 Pass PlanPass(const MaskStream& stream, const BackgroundOptions& options, double rate) {
-  const bool learns =
-      std::ranges::any_of(stream.subtractors(), [](const auto& camera) { return !!camera; });
   const std::optional<std::int64_t> frames = stream.frame_count();
-  if (!learns) return {.plan = SampleBeginning({}, frames, rate)};  // masks as they are
+  if (!stream.learns()) return {.plan = SampleBeginning({}, frames, rate)};  // masks as they are
   const RehearsalPlan plan = PlanRehearsal(options.rehearsal, frames, rate);
   if (plan.samples > 0) {
     return {.plan = plan, .rehearses = true, .first_measured = plan.samples / 4};

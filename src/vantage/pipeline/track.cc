@@ -28,10 +28,7 @@ class Feedback {
                                                 const OccupancyMaps& like) {
     VANTAGE_ASSIGN_OR_RETURN(std::vector<Polygon> doors,
                              DoorsAndEntrances(like.grid, scene.doors, scene.entrances_m));
-    const auto learns = [](const auto& subtractor) { return subtractor.has_value(); };
-    if (!options.hold.standing || std::ranges::none_of(stream.subtractors(), learns)) {
-      return std::nullopt;
-    }
+    if (!options.hold.standing || !stream.learns()) return std::nullopt;
     LinkingOptions linking = options.linking;
     linking.max_paths = 0;  // counts the paths of a whole recording
     std::vector<Camera> cameras;
