@@ -187,12 +187,18 @@ TEST(Linker, PeopleMoveAtMostAsFastAsAllowed) {
       1 - 2 * std::log(99), 1e-4);
 }
 
-TEST(Linker, TheDefaultIsASpeedAndNeedsCellsAndFrameRate) {
-  // Two cells in one frame, 20 frames per second: 7 m/s in cells of 0.175 m.
+/// Somebody in cell 4 and then in cell 6.
+Corridor JumpOfTwoCells() {
   Corridor corridor(9, 2);
   corridor.Set(0, 4, 0.99F);
   corridor.Set(1, 6, 0.99F);
   corridor.NoAccess();
+  return corridor;
+}
+
+TEST(Linker, TheDefaultIsASpeedAndNeedsCellsAndFrameRate) {
+  // Two cells in one frame, 20 frames per second: 7 m/s in cells of 0.175 m.
+  const Corridor corridor = JumpOfTwoCells();
   LinkingProblem problem = corridor.problem();
   problem.frames_per_second = 20;
   const auto paths = [&](double cell_m) {
@@ -215,10 +221,7 @@ TEST(Linker, TheDefaultIsASpeedAndNeedsCellsAndFrameRate) {
 }
 
 TEST(Linker, DepthTakesThePlaceOfMaxSpeed) {
-  Corridor corridor(9, 2);
-  corridor.Set(0, 4, 0.99F);
-  corridor.Set(1, 6, 0.99F);
-  corridor.NoAccess();
+  const Corridor corridor = JumpOfTwoCells();
   LinkingProblem problem = corridor.problem();
   problem.cell_m = 0.5;
   problem.frames_per_second = 10;
