@@ -3,8 +3,8 @@
 
 # The modules from left to right: a module includes only modules left of it.
 # cmake/CheckLayers.cmake enforces this at every build.
-set(VANTAGE_MODULES base geometry video scene background occupancy tracks linking metrics
-                    simulation rendering pipeline experiments)
+set(VANTAGE_MODULES base geometry video scene background occupancy tracks linking identity
+                    metrics simulation rendering pipeline experiments)
 
 # Settings for our own code; never leak to consumers.
 add_library(vantage_settings INTERFACE)

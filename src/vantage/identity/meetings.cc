@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "vantage/identity/meetings.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+struct Distance {
+  std::int64_t frame = 0;
+  double metres = 0;
+};
+
+/// Distances of pairs of paths while they are below a limit, in ascending order of frames.
+using PairDistances = std::map<std::pair<std::size_t, std::size_t>, std::vector<Distance>>;
+
+PairDistances DistancesBelow(std::span<const LinkedPath> paths, const GroundGrid& grid,
+                             double limit_m) {
+  std::int64_t end = 0;
+  for (const LinkedPath& path : paths) {
+    end = std::max(end, path.first_frame + std::ssize(path.cells));
+  }
+  struct Standing {
+    double x_m = 0;
+    double y_m = 0;
+    std::size_t path = 0;
+  };
+  PairDistances distances;
+  std::vector<Standing> people;
+  std::vector<std::size_t> waiting(paths.size());  // by descending first frame
+  for (std::size_t i = 0; i < paths.size(); ++i) waiting[i] = i;
+  std::ranges::stable_sort(waiting, std::greater<>(),
+                           [&](std::size_t i) { return paths[i].first_frame; });
+  std::vector<std::size_t> present;
+  for (std::int64_t frame = 0; frame < end; ++frame) {
+    while (!waiting.empty() && paths[waiting.back()].first_frame <= frame) {
+      present.push_back(waiting.back());
+      waiting.pop_back();
+    }
+    people.clear();
+    std::erase_if(present, [&](std::size_t i) {
+      return paths[i].first_frame + std::ssize(paths[i].cells) <= frame;
+    });
+    for (const std::size_t i : present) {
+      const Eigen::Vector2d at =
+          grid.Center(paths[i].cells[static_cast<std::size_t>(frame - paths[i].first_frame)]);
+      people.push_back({.x_m = at.x(), .y_m = at.y(), .path = i});
+    }
+    std::ranges::sort(people, {}, [](const Standing& s) { return std::pair(s.x_m, s.path); });
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      for (std::size_t j = i + 1; j < people.size(); ++j) {
+        const double x_m = people[j].x_m - people[i].x_m;
+        if (x_m >= limit_m) break;
+        const double metres = std::hypot(x_m, people[j].y_m - people[i].y_m);
+        if (metres >= limit_m) continue;
+        distances[std::minmax({people[i].path, people[j].path})].push_back(
+            {.frame = frame, .metres = metres});
+      }
+    }
+  }
+  return distances;
+}
+
+/// True when nothing within `apart_frames` before `at` is as near, and nothing after it nearer.
+bool IsNearest(std::span<const Distance> distances, std::size_t at, std::int64_t apart_frames) {
+  const Distance& here = distances[at];
+  for (std::size_t i = at; i-- > 0 && here.frame - distances[i].frame <= apart_frames;) {
+    if (distances[i].metres <= here.metres) return false;
+  }
+  for (std::size_t i = at + 1;
+       i < distances.size() && distances[i].frame - here.frame <= apart_frames; ++i) {
+    if (distances[i].metres < here.metres) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Meeting> FindMeetings(std::span<const LinkedPath> paths, const GroundGrid& grid,
+                                  double distance_m, std::int64_t apart_frames) {
+  std::vector<Meeting> meetings;
+  for (const auto& [pair, distances] : DistancesBelow(paths, grid, distance_m)) {
+    const auto [first, second] = pair;
+    const std::int64_t both = std::max(paths[first].first_frame, paths[second].first_frame);
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      if (distances[i].frame > both && IsNearest(distances, i, apart_frames)) {
+        meetings.push_back({.frame = distances[i].frame, .first = first, .second = second});
+      }
+    }
+  }
+  std::ranges::stable_sort(meetings, {}, &Meeting::frame);
+  return meetings;
+}
+
+}  // namespace vantage
