@@ -19,6 +19,7 @@ CLI::Option* SceneFlags::DefineUpToOccupancy(CLI::App& app, const std::string& o
 CLI::Option* SceneFlags::DefineForTracking(CLI::App& app) {
   CLI::Option* scene = DefineUpToOccupancy(app, "occupancy-");
   linking_ = AddOptionFlags(app, LinkingOptions{}, "linking-", "Linking");
+  identity_ = AddOptionFlags(app, IdentityOptions{}, "identity-", "Identity");
   tracks_ = AddOptionFlags(app, TrackOptions{}, "tracks-", "Tracks");
   return scene;
 }
@@ -36,6 +37,7 @@ Result<SceneSetup> SceneFlags::Load() const {
   hold_.ApplyTo(setup.options.hold);
   occupancy_.ApplyTo(setup.options.occupancy);
   linking_.ApplyTo(setup.options.linking);
+  identity_.ApplyTo(setup.options.identity);
   tracks_.ApplyTo(setup.options.tracks);
   return setup;
 }

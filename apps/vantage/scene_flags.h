@@ -33,7 +33,7 @@ class SceneFlags {
  private:
   CLI::Option* DefineUpToOccupancy(CLI::App& app, const std::string& occupancy_prefix);
   std::string scene_, data_;
-  OptionFlags grid_, person_, background_, hold_, occupancy_, linking_, tracks_;
+  OptionFlags grid_, person_, background_, hold_, occupancy_, linking_, identity_, tracks_;
 };
 
 }  // namespace vantage::app

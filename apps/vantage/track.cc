@@ -68,6 +68,14 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
                                         maps.hold.places, maps.hold.released_by_time,
                                         maps.hold.released_as_ghosts_px)});
   }
+  const IdentityReport& identity = result.report.identity;
+  if (identity.appearances > 0) {
+    rows.push_back(
+        {"identity", identity.learnt
+                         ? fmt::format("{} of {} meetings decided by colours against linking",
+                                       identity.exchanges.size(), identity.meetings)
+                         : std::string("too few people seen apart to tell them by colours")});
+  }
   for (std::size_t i = 0; i < maps.background.size(); ++i) {
     for (const DisturbanceEvent& event : maps.background[i].disturbances.events) {
       rows.push_back({"disturbance", fmt::format("{}: {}", scene.cameras[i].name,
@@ -86,6 +94,7 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
   rows.push_back({"maps", rate(maps.wall_secs)});
   rows.push_back({"linking", rate(result.report.linking.linking.seconds)});
   const double recorded_secs = static_cast<double>(maps.frames) / scene.frames_per_second;
+  rows.push_back({"identity", fmt::format("{:.2f} s", result.report.identity.seconds)});
   rows.push_back({"total", fmt::format("{}, {:.2f} x real time", rate(result.report.total_secs),
                                        recorded_secs / result.report.total_secs)});
   PrintTable(rows);

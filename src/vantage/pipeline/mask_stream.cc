@@ -97,7 +97,7 @@ FlowStage MaskStages::Reading() {
   return {.lanes = stream_.cameras(),
           .queue = kPictureQueue,
           .work = [this](std::int64_t frame, int camera) {
-            return stream_.Read(camera, frame, pictures_[frame][static_cast<std::size_t>(camera)]);
+            return stream_.Read(camera, frame, read_[frame][static_cast<std::size_t>(camera)]);
           }};
 }
 
@@ -109,8 +109,13 @@ FlowStage MaskStages::Background(std::int64_t queue, std::function<const cv::Mat
                       std::int64_t frame, int camera) -> Result<bool> {
             const auto index = static_cast<std::size_t>(camera);
             cv::Mat& mask = masks[frame][index];
-            VANTAGE_RETURN_IF_ERROR(stream_.Subtract(camera, pictures_[frame][index],
-                                                     held ? held(camera) : cv::Mat(), mask));
+            cv::Mat& picture = read_[frame][index];
+            VANTAGE_RETURN_IF_ERROR(
+                stream_.Subtract(camera, picture, held ? held(camera) : cv::Mat(), mask));
+            // Moved, so that the picture read next has memory of its own.
+            if (KeepsPictures(frame) && stream_.subtractors()[index]) {
+              pictures[frame][index] = std::move(picture);
+            }
             if (made) made(camera, mask);
             return true;
           }};

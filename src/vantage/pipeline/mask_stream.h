@@ -81,18 +81,26 @@ class Ring {
 };
 
 /// The first two stages of a chain, reading and background, with a lane for each camera. They leave
-/// the masks in masks[frame][camera].
+/// the masks in masks[frame][camera] and, of some frames, the pictures of cameras that deliver
+/// colour in pictures[frame][camera], empty ones of the other cameras.
 class MaskStages {
  public:
   /// Pictures that wait for the background: a decoder has long frames and short ones.
   static constexpr std::int64_t kPictureQueue = 4;
 
   /// `kept`: frames for which the masks of one stay; the queues from the background to the last
-  /// stage that uses them.
-  MaskStages(MaskStream& stream, std::int64_t kept)
+  /// stage that uses them. Pictures stay of every so many frames, from the first on; 0: of none.
+  /// Who uses them lets go of them, since the next ones come only so many frames later.
+  MaskStages(MaskStream& stream, std::int64_t kept, std::int64_t frames_between_pictures = 0)
       : masks(kept, std::vector<cv::Mat>(static_cast<std::size_t>(stream.cameras()))),
+        pictures(kept, std::vector<cv::Mat>(static_cast<std::size_t>(stream.cameras()))),
         stream_(stream),
-        pictures_(kPictureQueue, std::vector<cv::Mat>(static_cast<std::size_t>(stream.cameras()))) {
+        frames_between_pictures_(frames_between_pictures),
+        read_(kPictureQueue, std::vector<cv::Mat>(static_cast<std::size_t>(stream.cameras()))) {}
+
+  /// Whether the pictures of a frame stay.
+  bool KeepsPictures(std::int64_t frame) const {
+    return frames_between_pictures_ > 0 && frame % frames_between_pictures_ == 0;
   }
 
   FlowStage Reading();
@@ -101,10 +109,12 @@ class MaskStages {
                        std::function<void(int camera, const cv::Mat& mask)> made = {});
 
   Ring<std::vector<cv::Mat>> masks;
+  Ring<std::vector<cv::Mat>> pictures;
 
  private:
   MaskStream& stream_;
-  Ring<std::vector<cv::Mat>> pictures_;
+  std::int64_t frames_between_pictures_;
+  Ring<std::vector<cv::Mat>> read_;
 };
 
 }  // namespace vantage

@@ -77,6 +77,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   used["hold"] = Recorded(options.hold);
   used["occupancy"] = Recorded(options.occupancy);
   used["linking"] = Recorded(options.linking);
+  used["identity"] = Recorded(options.identity);
   used["tracks"] = Recorded(options.tracks);
 
   json["extension"] = JsonOf(maps.extension, scene);
@@ -97,6 +98,9 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   counts["occupancy_frames_not_converged"] = maps.frames_not_converged;
   counts["paths"] = result.report.linking.linking.paths;
   counts["linking_cost"] = result.report.linking.linking.cost;
+  counts["appearances"] = result.report.identity.appearances;
+  counts["meetings"] = result.report.identity.meetings;
+  counts["exchanges"] = result.report.identity.exchanges.size();
   counts["tracks"] = result.tracks.size();
   std::size_t positions = 0;
   for (const Track& track : result.tracks) positions += track.points.size();
@@ -119,6 +123,7 @@ Result<Json> Summarize(const RunRequest& request, const Scene& scene, const Stag
   stages["idle"] = Json{{"seconds", maps.idle_secs}};
   stages["maps"] = StageJson(maps.wall_secs, maps.frames);
   stages["linking"] = StageJson(result.report.linking.linking.seconds, maps.frames);
+  stages["identity"] = StageJson(result.report.identity.seconds, maps.frames);
   stages["total"] = StageJson(result.report.total_secs, maps.frames);
   return json;
 }

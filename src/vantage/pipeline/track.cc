@@ -8,6 +8,7 @@
 
 #include "vantage/base/stopwatch.h"
 #include "vantage/linking/access.h"
+#include "vantage/occupancy/peaks.h"
 #include "vantage/pipeline/flow.h"
 #include "vantage/pipeline/ground.h"
 #include "vantage/pipeline/mask_stream.h"
@@ -90,12 +91,14 @@ constexpr std::int64_t kMapQueue = 8;
 /// a camera's background and by collecting in turns.
 class MapChain {
  public:
-  MapChain(const OccupancySolver& solver, bool warm_start, MaskStream& stream,
-           std::optional<Feedback>& feedback, const MaskSink& mask_sink, MapsResult& result)
+  MapChain(const OccupancySolver& solver, bool warm_start, const AppearanceSampler& sampler,
+           std::int64_t frames_between_looks, MaskStream& stream, std::optional<Feedback>& feedback,
+           const MaskSink& mask_sink, MapsResult& result)
       : solver_(solver),
         warm_start_(warm_start),
+        sampler_(sampler),
         stream_(stream),
-        stages_(stream, kMaskQueue + kMapQueue),
+        stages_(stream, kMaskQueue + kMapQueue, frames_between_looks),
         solved_(kMapQueue + 1),
         feedback_(feedback),
         mask_sink_(mask_sink),
@@ -140,6 +143,7 @@ class MapChain {
  private:
   struct Solved {
     std::vector<float> map;
+    Appearances appearances;
     SolveReport report;
   };
 
@@ -151,7 +155,19 @@ class MapChain {
                              solver_.Solve(stages_.masks[frame], solved.map,
                                            follows ? std::span<const float>(solved_[frame - 1].map)
                                                    : std::span<const float>()));
+    solved.appearances.clear();
+    if (stages_.KeepsPictures(frame)) VANTAGE_RETURN_IF_ERROR(Look(frame, solved));
     return true;
+  }
+
+  /// The colours of the people whom the map of a frame shows.
+  Status Look(std::int64_t frame, Solved& solved) {
+    VANTAGE_ASSIGN_OR_RETURN(const std::vector<Peak> people,
+                             FindPeaks(result_.maps.grid, solved.map, PeakOptions()));
+    std::vector<cv::Mat>& pictures = stages_.pictures[frame];
+    sampler_.Look(frame, pictures, stages_.masks[frame], people, solved.appearances);
+    for (cv::Mat& picture : pictures) picture.release();
+    return {};
   }
 
   Status Collect(std::int64_t frame) {
@@ -162,6 +178,8 @@ class MapChain {
     }
     std::vector<float>& values = result_.maps.values;
     values.insert(values.end(), solved.map.begin(), solved.map.end());
+    result_.appearances.insert(result_.appearances.end(), solved.appearances.begin(),
+                               solved.appearances.end());
     iterations_ += solved.report.iterations;
     report.frames_not_converged += solved.report.converged ? 0 : 1;
     report.pictures_missing += solved.report.cameras_left_out;
@@ -170,6 +188,7 @@ class MapChain {
 
   const OccupancySolver& solver_;
   bool warm_start_;
+  const AppearanceSampler& sampler_;
   MaskStream& stream_;
   MaskStages stages_;
   Ring<Solved> solved_;  // one more than wait: a warm start reads the one before
@@ -186,6 +205,7 @@ Status BindStages(const Scene& scene, StageOptions& options) {
   VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("hold", options.hold));
   VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("occupancy", options.occupancy));
   VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("linking", options.linking));
+  VANTAGE_RETURN_IF_ERROR(scene.stages.Bind("identity", options.identity));
   return scene.stages.Bind("tracks", options.tracks);
 }
 
@@ -216,7 +236,16 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
   VANTAGE_ASSIGN_OR_RETURN(std::optional<Feedback> feedback,
                            Feedback::Create(scene, report.person.used, options, stream, maps));
 
-  MapChain chain(solver, options.occupancy.warm_start, stream, feedback, mask_sink, result);
+  std::vector<AppearanceSampler::View> looks;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    looks.push_back(
+        {.camera = scene.cameras[i].camera, .informative = ground.views[i].informative});
+  }
+  const AppearanceSampler sampler(std::move(looks), report.person.used);
+  const bool looks_at_people = options.identity.appearance && stream.learns();
+  MapChain chain(solver, options.occupancy.warm_start, sampler,
+                 looks_at_people ? LookInterval(options.identity, scene.frames_per_second) : 0,
+                 stream, feedback, mask_sink, result);
   VANTAGE_RETURN_IF_ERROR(chain.Run(threads, control));
   if (report.frames == 0) {
     return Fail("{}: no frame to process: the cameras have no picture at frame {} or after it",
@@ -240,8 +269,12 @@ Result<TrackingResult> TrackPeople(const Scene& scene, const StageOptions& optio
       LinkMapsResult linked,
       LinkMaps(mapped.maps, options.linking, options.tracks, doors, scene.obstacles, control));
   TrackingResult result;
+  VANTAGE_ASSIGN_OR_RETURN(result.report.identity,
+                           IdentifyTracks(mapped.maps, mapped.appearances, options.identity,
+                                          options.tracks, linked, control));
   result.tracks = std::move(linked.tracks);
   result.maps = std::move(mapped.maps);
+  result.appearances = std::move(mapped.appearances);
   result.report.maps = std::move(mapped.report);
   result.report.linking = linked.report;
   result.report.total_secs = stopwatch.Seconds();

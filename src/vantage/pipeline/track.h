@@ -9,6 +9,8 @@
 #include "vantage/background/subtractor.h"
 #include "vantage/base/result.h"
 #include "vantage/base/run_control.h"
+#include "vantage/identity/appearance.h"
+#include "vantage/identity/identify.h"
 #include "vantage/linking/link_maps.h"
 #include "vantage/occupancy/extension.h"
 #include "vantage/occupancy/maps.h"
@@ -26,10 +28,12 @@ struct StageOptions {
   HoldOptions hold;
   OccupancyOptions occupancy;
   LinkingOptions linking;
+  IdentityOptions identity;
   TrackOptions tracks;
 };
 
-/// Sets what the scene's tables [background], [hold], [occupancy], [linking] and [tracks] give.
+/// Sets what the scene's tables [background], [hold], [occupancy], [linking], [identity] and
+/// [tracks] give.
 Status BindStages(const Scene& scene, StageOptions& options);
 
 /// What the way from pictures to maps did.
@@ -64,6 +68,9 @@ struct MapsReport {
 
 struct MapsResult {
   OccupancyMaps maps;
+  /// Colours of the people in the maps; none without options.identity.appearance and where no
+  /// camera delivers colour.
+  Appearances appearances;
   MapsReport report;
 };
 
@@ -79,12 +86,14 @@ Result<MapsResult> ComputeMaps(const Scene& scene, const StageOptions& options, 
 struct TrackingReport {
   MapsReport maps;
   LinkMapsReport linking;
+  IdentityReport identity;
   double total_secs = 0;
 };
 
 struct TrackingResult {
   Tracks tracks;
   OccupancyMaps maps;
+  Appearances appearances;
   TrackingReport report;
 };
 

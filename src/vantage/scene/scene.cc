@@ -22,8 +22,8 @@ using internal::TableReader;
 
 constexpr std::size_t kMaxFileBytes = 1 << 24;
 constexpr std::int64_t kMaxFrames = 1'000'000'000;
-constexpr std::array<std::string_view, 5> kStages = {"background", "hold", "occupancy", "linking",
-                                                     "tracks"};
+constexpr std::array<std::string_view, 6> kStages = {"background", "hold",     "occupancy",
+                                                     "linking",    "identity", "tracks"};
 
 Result<Polygon> MakePolygon(const TableReader& area, std::string_view key,
                             const std::vector<std::vector<double>>& corners) {
