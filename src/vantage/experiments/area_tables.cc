@@ -64,7 +64,7 @@ struct Part {
 
 Part PartOf(TrackRecording recording, bool has_pictures) {
   Part part{.recording = std::move(recording)};
-  const StageOptions defaults = OptionsWithoutHold(part.recording);
+  const StageOptions defaults = PlainOptionsFor(part.recording);
   const CellPtr masks =
       has_pictures ? MasksCell(part.recording, "defaults", defaults.background) : nullptr;
   for (const AreaRow& row : kRows) {
@@ -157,8 +157,8 @@ constexpr const char* kIntroduction =
     "(complete), the centre of gravity (centre), the foot point (ground), or with the weight of "
     "the "
     "visible share (continuous, the default). Masks are the defaults', the same for all rows; all "
-    "else is at the defaults, and nobody is held in the foreground. A match is nearer than 1 m, "
-    "inside the area.";
+    "else is at the defaults, but that nobody is held in the foreground and nobody told apart by "
+    "colours. A match is nearer than 1 m, inside the area.";
 
 void Append(const Part& part, ExperimentPlan& plan) {
   plan.cells.insert(plan.cells.end(), part.cells.begin(), part.cells.end());

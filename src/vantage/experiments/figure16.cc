@@ -61,8 +61,8 @@ void AddCharts(const Sweep& sweep, const std::vector<TrackRow>& rows, ReportPage
 Status Report(const Sweep& sweep, const CellResults& results, ReportPage& page,
               ExperimentReport& report) {
   page.Paragraph(
-      "Masks are the defaults', the same for all sizes; all else is at the defaults, and nobody is "
-      "held in the foreground. The thesis shows its figures as a picture only and takes 0.5 m.");
+      "Masks are the defaults', the same for all sizes; all else is at the defaults, but that nobody "
+      "is held in the foreground and nobody told apart by colours. The thesis shows its figures as a picture only and takes 0.5 m.");
   std::vector<TrackRow> rows;
   for (std::size_t i = 0; i < sweep.cells.size(); ++i) {
     rows.push_back({.name = fmt::format("{} m", sweep.sizes_m[i]),
@@ -99,7 +99,7 @@ Result<ExperimentPlan> Plan(const Study& study) {
   ExperimentPlan plan;
   VANTAGE_ASSIGN_OR_RETURN(TrackRecording recording, FloorballRecording(study));
   Sweep sweep{.recording = std::move(recording), .sizes_m = CellSizes(study)};
-  const StageOptions defaults = OptionsWithoutHold(sweep.recording);
+  const StageOptions defaults = PlainOptionsFor(sweep.recording);
   const CellPtr masks = MasksCell(sweep.recording, "defaults", defaults.background);
   for (const double cell_m : sweep.sizes_m) {
     sweep.cells.push_back(TrackCell(

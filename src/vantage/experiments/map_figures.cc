@@ -83,7 +83,7 @@ struct Ruled {
 
 Result<Ruled> MapsUnder(const TrackRecording& recording, const CellPtr& masks, bool extended,
                         Visibility visibility, const CellRun& run) {
-  TrackSetting setting{.name = "", .options = OptionsWithoutHold(recording)};
+  TrackSetting setting{.name = "", .options = PlainOptionsFor(recording)};
   setting.options.occupancy.visibility = visibility;
   if (!extended) setting.extension_m = 0;
   VANTAGE_ASSIGN_OR_RETURN(Scene scene, SceneFor(recording, setting, masks, run.folder));
@@ -269,7 +269,7 @@ Result<ExperimentPlan> PlanMapFigures(const Study& study) {
   VANTAGE_ASSIGN_OR_RETURN(std::optional<TrackRecording> video, PetsVideoRecording(study, absent));
   Figures figures{
       .grid_of = video ? *video : campus, .maps_of = floorball, .grids = {}, .maps = {}};
-  const TrackSetting defaults{.name = "", .options = OptionsWithoutHold(floorball)};
+  const TrackSetting defaults{.name = "", .options = PlainOptionsFor(floorball)};
   figures.grids =
       std::make_shared<const Cell>(Cell{.name = "grids-" + figures.grid_of.name,
                                         .inputs = InputsOf(figures.grid_of, defaults, true),

@@ -75,7 +75,7 @@ struct Part {
 };
 
 TrackSetting SettingOf(const TrackRecording& recording, const BackgroundRow& row) {
-  TrackSetting setting{.name = row.name, .options = OptionsWithoutHold(recording)};
+  TrackSetting setting{.name = row.name, .options = PlainOptionsFor(recording)};
   // The first frame was the background at first.
   setting.options.background.rehearsal.rehearsal_secs = 0;
   setting.options.background.mixture.rate = row.rate;
@@ -124,8 +124,8 @@ Status Report(const std::vector<Part>& parts, const CellResults& results, Report
               ExperimentReport& report) {
   page.Paragraph(
       "The tracker with masks made in different ways; all else is at the defaults, but that nobody "
-      "is held in the foreground and the background not rehearsed, of which the thesis knows "
-      "neither; the row \"defaults\" has both. A match is nearer than 1 m, inside the area. Of "
+      "is held in the foreground, nobody told apart by colours and the background not rehearsed, "
+      "which the thesis does not know; the row \"defaults\" has all three. A match is nearer than 1 m, inside the area. Of "
       "PETS the thesis does not give the unit of its MOTP; "
       "it is not metres.");
   for (const Part& part : parts) {

@@ -67,6 +67,7 @@ Json SecondsOf(const TrackingReport& report) {
           {"occupancy", report.maps.occupancy_secs},
           {"hold", report.maps.hold_secs},
           {"linking", report.linking.linking.seconds},
+          {"identity", report.identity.seconds},
           {"total", report.total_secs}};
 }
 
@@ -111,9 +112,10 @@ StageOptions DefaultsFor(const TrackRecording& recording) {
   return options;
 }
 
-StageOptions OptionsWithoutHold(const TrackRecording& recording) {
+StageOptions PlainOptionsFor(const TrackRecording& recording) {
   StageOptions options = DefaultsFor(recording);
   options.hold.standing = false;
+  options.identity.appearance = false;
   return options;
 }
 
@@ -127,10 +129,11 @@ Json InputsOf(const TrackRecording& recording, const TrackSetting& setting, bool
                  {"linking", Recorded(setting.options.linking)},
                  {"tracks", Recorded(setting.options.tracks)},
                  {"evaluation", Recorded(EvaluationOptions())}};
-  // Ready masks are neither subtracted nor held.
+  // Ready masks are neither subtracted nor held, and have no colours.
   if (!from_masks) {
     inputs["background"] = Recorded(setting.options.background);
     inputs["hold"] = Recorded(setting.options.hold);
+    inputs["identity"] = Recorded(setting.options.identity);
   }
   return inputs;
 }

@@ -29,9 +29,10 @@ struct TrackSetting {
 /// are reduced with them: people would be cleaned away.
 StageOptions DefaultsFor(const TrackRecording& recording);
 
-/// The same with nobody held (HoldOptions::standing): the thesis knows no way back from the tracks
-/// to the masks, and masks made once serve several settings.
-StageOptions OptionsWithoutHold(const TrackRecording& recording);
+/// The same with nobody held (HoldOptions::standing) and nobody told apart by colours
+/// (IdentityOptions::appearance): the thesis knows neither, and masks made once, which have no
+/// colours, serve several settings.
+StageOptions PlainOptionsFor(const TrackRecording& recording);
 
 /// Masks of all cameras of a recording, without the way back from the tracks, in masks/NAME-SETTING
 /// of the working folder, a folder a camera, without loss.

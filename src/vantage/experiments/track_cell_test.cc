@@ -71,7 +71,7 @@ TEST(TrackCell, TracksTheDrawnPeople) {
 TEST(TrackCell, MasksMadeBeforeGiveTheSameTracks) {
   const DrawnStudy drawn;
   const TrackRecording recording = FloorballRecording(drawn.study).value();
-  const TrackSetting setting{.name = "without", .options = OptionsWithoutHold(recording)};
+  const TrackSetting setting{.name = "without", .options = PlainOptionsFor(recording)};
   const CellPtr whole = TrackCell(recording, setting);
   const CellPtr masks = MasksCell(recording, "defaults", setting.options.background);
   TrackSetting named = setting;
@@ -86,7 +86,7 @@ TEST(TrackCell, MasksMadeBeforeGiveTheSameTracks) {
 TEST(TrackCell, OptionsDecideWhatIsKept) {
   const DrawnStudy drawn;
   const TrackRecording recording = FloorballRecording(drawn.study).value();
-  TrackSetting setting{.name = "one", .options = OptionsWithoutHold(recording)};
+  TrackSetting setting{.name = "one", .options = PlainOptionsFor(recording)};
   const auto run = [&] {
     return RunCells(drawn.study.output, {TrackCell(recording, setting)}, 1, false)->computed;
   };
