@@ -188,7 +188,8 @@ Result<Identified> IdentifyPeople(std::vector<LinkedPath> paths, const Occupancy
   if (!options.appearance || appearances.empty()) return result;
 
   const double frames_per_second = maps.frames_per_second;
-  const double independent_frames = options.independent_secs * frames_per_second;
+  // Not less than a frame: there is nothing within it.
+  const double independent_frames = std::max(1.0, options.independent_secs * frames_per_second);
   const double weight = std::min(
       1.0, static_cast<double>(LookInterval(options, frames_per_second)) / independent_frames);
   const std::int64_t apart_frames =
