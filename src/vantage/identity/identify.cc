@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -136,6 +137,16 @@ std::vector<Look> LooksAlong(std::span<const LinkedPath> paths, const GroundGrid
   return looks;
 }
 
+/// Frames between two looks: however people were missed, the least there is.
+std::int64_t FramesBetween(std::span<const Sight> sights) {
+  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t i = 1; i < sights.size(); ++i) {
+    const std::int64_t gap = sights[i].frame - sights[i - 1].frame;
+    if (gap > 0) least = std::min(least, gap);
+  }
+  return least;
+}
+
 /// The independent observations of each path: means over as many frames as hardly differ.
 std::vector<MatrixXd> IndependentObservations(std::span<const Look> looks, double frames) {
   struct Mean {
@@ -162,8 +173,9 @@ std::vector<MatrixXd> IndependentObservations(std::span<const Look> looks, doubl
 
 void VisitOptions(IdentityOptions& o, OptionVisitor& v) {
   v.Flag({"appearance", "", "colours decide who leaves a meeting of people as whom"}, o.appearance);
-  v.Number({"interval", "s", "time between two looks at people's colours"}, o.interval_secs,
-           Range::AboveUpTo(0, 60));
+  v.Number(
+      {"interval", "s", "time between two looks at people's colours, while there are pictures"},
+      o.interval_secs, Range::AboveUpTo(0, 60));
   v.Number({"distance", "m", "people nearer to each other than this may be taken for each other"},
            o.distance_m, Range::Above(0));
   v.Number({"independent", "s", "looks at a person within this time count as one"},
@@ -190,11 +202,11 @@ Result<Identified> IdentifyPeople(std::vector<LinkedPath> paths, const Occupancy
   const double frames_per_second = maps.frames_per_second;
   // Not less than a frame: there is nothing within it.
   const double independent_frames = std::max(1.0, options.independent_secs * frames_per_second);
-  const double weight = std::min(
-      1.0, static_cast<double>(LookInterval(options, frames_per_second)) / independent_frames);
   const std::int64_t apart_frames =
       std::max<std::int64_t>(1, std::llround(kMeetingsApart_secs * frames_per_second));
   const std::vector<Sight> sights = SightsOf(appearances);
+  const double weight =
+      std::min(1.0, static_cast<double>(FramesBetween(sights)) / independent_frames);
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<Look> looks = LooksAlong(result.paths, maps.grid, sights);
     const std::optional<PersonModel> model =

@@ -20,7 +20,8 @@ namespace vantage {
 struct IdentityOptions {
   /// Colours decide. Otherwise linking does, which knows no person from another.
   bool appearance = true;
-  /// Time between two looks at people's colours, 0 < interval_secs <= 60.
+  /// Time between two looks at people's colours, 0 < interval_secs <= 60. For LookInterval alone:
+  /// IdentifyPeople finds it in the appearances.
   double interval_secs = 0.2;
   /// Two people who come nearer to each other than this may be taken for each other, m, > 0.
   double distance_m = 1.2;
