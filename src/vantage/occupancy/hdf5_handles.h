@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-/// Internal to the occupancy module: HDF5's identifiers as values that close themselves.
+/// Internal to the library: HDF5's identifiers as values that close themselves.
 
 namespace vantage::hdf5 {
 
