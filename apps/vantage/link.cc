@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "command.h"
+#include "identity_rows.h"
 #include "link_explain.h"
 #include "link_stream.h"
 #include "vantage/base/file.h"
+#include "vantage/identity/appearance_file.h"
+#include "vantage/identity/identify.h"
 #include "vantage/linking/access.h"
 #include "vantage/linking/ksp_run.h"
 #include "vantage/linking/link_maps.h"
@@ -30,7 +33,7 @@ struct StreamOptions {
 void VisitOptions(StreamOptions& o, OptionVisitor& v) {
   v.NumberOr({"lag", "s",
               "as a stream: positions of a frame are final once the maps of so many seconds more "
-              "(at least one frame) are known; only these are in memory"},
+              "(at least one frame) are known; only these are in memory; colours are not used"},
              o.lag_secs, "none", Range::Between(0, 1e6));
 }
 
@@ -40,7 +43,7 @@ constexpr const char* kKspOutput = "ksp-out.dat";
 struct Flags {
   std::filesystem::path maps, ksp, output, scene, data, explain;
   FrameRange frames;
-  OptionFlags stream, linking, tracks;
+  OptionFlags stream, linking, identity, tracks;
   bool gap = false;
 };
 
@@ -48,6 +51,7 @@ struct Flags {
 struct Setup {
   Scene scene;  ///< without an area, doors and obstacles when none was given
   LinkingOptions linking;
+  IdentityOptions identity;
   TrackOptions tracks;
 };
 
@@ -56,15 +60,17 @@ Result<Setup> MakeSetup(const Flags& flags) {
   if (!flags.scene.empty()) {
     VANTAGE_ASSIGN_OR_RETURN(setup.scene, LoadScene(flags.scene, flags.data));
     VANTAGE_RETURN_IF_ERROR(setup.scene.stages.Bind("linking", setup.linking));
+    VANTAGE_RETURN_IF_ERROR(setup.scene.stages.Bind("identity", setup.identity));
     VANTAGE_RETURN_IF_ERROR(setup.scene.stages.Bind("tracks", setup.tracks));
   }
   flags.linking.ApplyTo(setup.linking);
+  flags.identity.ApplyTo(setup.identity);
   flags.tracks.ApplyTo(setup.tracks);
   return setup;
 }
 
 void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result,
-                 const LinkExplanation* explanation, bool as_json) {
+                 const IdentityReport& identity, const LinkExplanation* explanation, bool as_json) {
   const LinkingReport& linking = result.report.linking;
   std::int64_t positions = 0;
   std::int64_t inferred = 0;
@@ -83,6 +89,9 @@ void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result,
                                    {"positions", positions},
                                    {"inferred", inferred},
                                    {"seconds", linking.seconds}};
+    json["appearances"] = identity.appearances;
+    json["meetings"] = identity.meetings;
+    json["exchanges"] = identity.exchanges.size();
     if (explanation != nullptr) json["explained"] = explanation->json();
     fmt::print("{}\n", json.dump(2));
     return;
@@ -94,8 +103,10 @@ void PrintReport(const OccupancyMaps& maps, const LinkMapsResult& result,
       {"paths", fmt::format("{}  (cost {:.3f})", linking.paths, linking.cost)},
       {"tracks", fmt::format("{}  ({} paths outside the area or too short)", result.tracks.size(),
                              result.report.dropped_paths)},
-      {"positions", fmt::format("{}  ({} inferred)", positions, inferred)},
-      {"linking", fmt::format("{:.2f} s", linking.seconds)}};
+      {"positions", fmt::format("{}  ({} inferred)", positions, inferred)}};
+  const std::vector<ReportRow> colors = IdentityRows(identity);
+  rows.insert(rows.end(), colors.begin(), colors.end());
+  rows.push_back({"linking", fmt::format("{:.2f} s", linking.seconds)});
   if (explanation != nullptr) {
     rows.insert(rows.end(), explanation->rows().begin(), explanation->rows().end());
   }
@@ -129,13 +140,20 @@ Status RunMaps(const Flags& flags, const CommonFlags& common) {
     VANTAGE_ASSIGN_OR_RETURN(explanation, LinkExplanation::Create(flags.explain, flags.frames));
   }
   VANTAGE_ASSIGN_OR_RETURN(const OccupancyMaps maps, ReadMaps(flags.maps));
+  Appearances appearances;
+  if (setup.identity.appearance) {
+    VANTAGE_ASSIGN_OR_RETURN(appearances, ReadAppearances(flags.maps, maps));
+  }
   VANTAGE_ASSIGN_OR_RETURN(
       setup.scene.doors, DoorsAndEntrances(maps.grid, setup.scene.doors, setup.scene.entrances_m));
   if (explanation) VANTAGE_RETURN_IF_ERROR(explanation->CheckFrames(maps));
   VANTAGE_ASSIGN_OR_RETURN(
-      const LinkMapsResult result,
+      LinkMapsResult result,
       LinkMaps(maps, setup.linking, setup.tracks, setup.scene.doors, setup.scene.obstacles,
                MakeRunControl(common, "link", "steps")));
+  VANTAGE_ASSIGN_OR_RETURN(const IdentityReport identity,
+                           IdentifyTracks(maps, appearances, setup.identity, setup.tracks, result,
+                                          MakeRunControl(common, "identify", "steps")));
   if (output) {
     VANTAGE_RETURN_IF_ERROR(
         WriteTracks(output->temporary(), result.tracks, maps.frames_per_second));
@@ -146,7 +164,7 @@ Status RunMaps(const Flags& flags, const CommonFlags& common) {
                             MakeRunControl(common, "explain", "paths")));
   }
   if (output) VANTAGE_RETURN_IF_ERROR(output->Commit());
-  PrintReport(maps, result, explanation ? &*explanation : nullptr, common.json);
+  PrintReport(maps, result, identity, explanation ? &*explanation : nullptr, common.json);
   return {};
 }
 
@@ -179,7 +197,8 @@ void CheckUsage(const Flags& flags, const std::vector<CLI::Option*>& others) {
     for (const CLI::Option* other : others) {
       if (other->count() > 0) throw CLI::ExcludesError("--ksp", other->get_name());
     }
-    for (const OptionFlags* options : {&flags.stream, &flags.linking, &flags.tracks}) {
+    for (const OptionFlags* options :
+         {&flags.stream, &flags.linking, &flags.identity, &flags.tracks}) {
       const std::string given = options->AnyGiven();
       if (!given.empty()) throw CLI::ExcludesError("--ksp", given);
     }
@@ -188,6 +207,9 @@ void CheckUsage(const Flags& flags, const std::vector<CLI::Option*>& others) {
   if (flags.maps.empty()) throw CLI::RequiredError("A file of maps or --ksp");
   if (!flags.explain.empty() && !flags.stream.AnyGiven().empty()) {
     throw CLI::ExcludesError("--explain", flags.stream.AnyGiven());
+  }
+  if (!flags.stream.AnyGiven().empty() && !flags.identity.AnyGiven().empty()) {
+    throw CLI::ExcludesError(flags.stream.AnyGiven(), flags.identity.AnyGiven());
   }
   if (flags.output.empty() && flags.explain.empty()) {
     throw CLI::RequiredError("--output or --explain");
@@ -211,8 +233,8 @@ Command LinkCommand() {
         CLI::Option* scene =
             app.add_option(
                    "--scene", flags->scene,
-                   "Scene file whose doors, entrances, obstacles and tables [linking] and [tracks] "
-                   "apply; flags win over its tables")
+                   "Scene file whose doors, entrances, obstacles and tables [linking], [identity] "
+                   "and [tracks] apply; flags win over its tables")
                 ->type_name("FILE");
         app.add_option("--data", flags->data,
                        "Folder that paths in the scene are relative to; default: the scene's "
@@ -226,6 +248,7 @@ Command LinkCommand() {
             ->group("Stream")
             ->needs("--lag");
         flags->linking = AddOptionFlags(app, LinkingOptions{}, "", "Linking");
+        flags->identity = AddOptionFlags(app, IdentityOptions{}, "identity-", "Identity");
         flags->tracks = AddOptionFlags(app, TrackOptions{}, "", "Tracks");
         app.add_option("--ksp", flags->ksp,
                        "Configuration of the original KSP program, in place of maps; its frames "

@@ -298,6 +298,7 @@ TEST(LinkKsp, HostileFilesAndFlagsGiveOneLineAndLeaveNothing) {
   expect("--ksp x.ksp --scene s.toml", 2, "--ksp");
   expect("--ksp x.ksp --depth 2", 2, "--ksp");
   expect("--ksp x.ksp --smoothing 1", 2, "--ksp");
+  expect("--ksp x.ksp --identity-margin 3", 2, "--ksp");
   expect("--ksp x.ksp --explain why --frames 0:1", 2, "--ksp");
   expect("-o t.csv", 2, "--ksp");
   expect("maps.h5", 2, "--output or --explain");

@@ -11,6 +11,7 @@
 #include "scene_flags.h"
 #include "scene_masks.h"
 #include "vantage/base/file.h"
+#include "vantage/identity/appearance_file.h"
 #include "vantage/occupancy/map_file.h"
 #include "vantage/occupancy/pom_run.h"
 #include "vantage/pipeline/summary.h"
@@ -104,7 +105,10 @@ Status RunScene(const Flags& flags, const CommonFlags& common) {
   VANTAGE_ASSIGN_OR_RETURN(const MapsResult result,
                            ComputeMaps(scene, setup.options, common.threads,
                                        MakeRunControl(common, "occupancy", "frames"), sink));
-  if (maps) VANTAGE_RETURN_IF_ERROR(WriteMaps(maps->temporary(), result.maps));
+  if (maps) {
+    VANTAGE_RETURN_IF_ERROR(WriteMaps(maps->temporary(), result.maps));
+    VANTAGE_RETURN_IF_ERROR(AddAppearances(maps->temporary(), result.appearances));
+  }
   if (explanation) {
     VANTAGE_RETURN_IF_ERROR(explanation->Finish(setup, result, common.threads));
   }

@@ -8,10 +8,12 @@
 
 #include "command.h"
 #include "extension_rows.h"
+#include "identity_rows.h"
 #include "scene_flags.h"
 #include "scene_masks.h"
 #include "vantage/background/report.h"
 #include "vantage/base/file.h"
+#include "vantage/identity/appearance_file.h"
 #include "vantage/occupancy/map_file.h"
 #include "vantage/pipeline/summary.h"
 #include "vantage/pipeline/track.h"
@@ -68,14 +70,8 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
                                         maps.hold.places, maps.hold.released_by_time,
                                         maps.hold.released_as_ghosts_px)});
   }
-  const IdentityReport& identity = result.report.identity;
-  if (identity.appearances > 0) {
-    rows.push_back(
-        {"identity", identity.learnt
-                         ? fmt::format("{} of {} meetings decided by colours against linking",
-                                       identity.exchanges.size(), identity.meetings)
-                         : std::string("too few people seen apart to tell them by colours")});
-  }
+  const std::vector<ReportRow> identity = IdentityRows(result.report.identity);
+  rows.insert(rows.end(), identity.begin(), identity.end());
   for (std::size_t i = 0; i < maps.background.size(); ++i) {
     for (const DisturbanceEvent& event : maps.background[i].disturbances.events) {
       rows.push_back({"disturbance", fmt::format("{}: {}", scene.cameras[i].name,
@@ -137,7 +133,10 @@ Status Run(const Flags& flags, const CommonFlags& common) {
   VANTAGE_RETURN_IF_ERROR(
       WriteTracks(staged[0].temporary(), result.tracks, setup.scene.frames_per_second));
   VANTAGE_RETURN_IF_ERROR(WriteTextFile(staged[1].temporary(), summary.dump(2) + "\n"));
-  if (flags.save_maps) VANTAGE_RETURN_IF_ERROR(WriteMaps(staged[2].temporary(), result.maps));
+  if (flags.save_maps) {
+    VANTAGE_RETURN_IF_ERROR(WriteMaps(staged[2].temporary(), result.maps));
+    VANTAGE_RETURN_IF_ERROR(AddAppearances(staged[2].temporary(), result.appearances));
+  }
   if (masks) VANTAGE_RETURN_IF_ERROR(masks->Finish());
   for (StagedFile& file : staged) VANTAGE_RETURN_IF_ERROR(file.Commit());
   if (common.json) {
@@ -158,7 +157,8 @@ Command TrackCommand() {
             app.add_option("-o,--output", flags->output,
                            "Folder for tracks.csv, summary.json and what else is asked for")
                 ->required();
-            app.add_flag("--save-maps", flags->save_maps, "Also write the occupancy maps, maps.h5");
+            app.add_flag("--save-maps", flags->save_maps,
+                         "Also write the occupancy maps with people's colours, maps.h5");
             app.add_flag("--save-masks", flags->save_masks,
                          "Also write the masks, masks/CAMERA/000000.png ...");
             return [flags](const CommonFlags& common) { return Run(*flags, common); };

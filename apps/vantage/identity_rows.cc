@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The Vantage authors
+// SPDX-License-Identifier: MIT
+#include "identity_rows.h"
+
+#include <fmt/format.h>
+
+namespace vantage::app {
+
+std::vector<ReportRow> IdentityRows(const IdentityReport& report) {
+  if (report.appearances == 0) return {};
+  if (!report.learnt) {
+    return {{"identity", "too few people seen apart to tell them by colours"}};
+  }
+  return {{"identity", fmt::format("{} of {} meetings decided by colours against linking",
+                                   report.exchanges.size(), report.meetings)}};
+}
+
+}  // namespace vantage::app
