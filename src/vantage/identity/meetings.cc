@@ -3,6 +3,7 @@
 #include "vantage/identity/meetings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -24,8 +25,8 @@ PairDistances DistancesBelow(std::span<const LinkedPath> paths, const GroundGrid
     end = std::max(end, path.first_frame + std::ssize(path.cells));
   }
   struct Standing {
-    double x_m = 0;
-    double y_m = 0;
+    int column = 0;
+    int row = 0;
     std::size_t path = 0;
   };
   PairDistances distances;
@@ -45,16 +46,17 @@ PairDistances DistancesBelow(std::span<const LinkedPath> paths, const GroundGrid
       return paths[i].first_frame + std::ssize(paths[i].cells) <= frame;
     });
     for (const std::size_t i : present) {
-      const Eigen::Vector2d at =
-          grid.Center(paths[i].cells[static_cast<std::size_t>(frame - paths[i].first_frame)]);
-      people.push_back({.x_m = at.x(), .y_m = at.y(), .path = i});
+      const CellIndex cell = paths[i].cells[static_cast<std::size_t>(frame - paths[i].first_frame)];
+      people.push_back({.column = grid.Column(cell), .row = grid.Row(cell), .path = i});
     }
-    std::ranges::sort(people, {}, [](const Standing& s) { return std::pair(s.x_m, s.path); });
+    std::ranges::sort(people, {}, [](const Standing& s) { return std::pair(s.column, s.path); });
     for (std::size_t i = 0; i < people.size(); ++i) {
       for (std::size_t j = i + 1; j < people.size(); ++j) {
-        const double x_m = people[j].x_m - people[i].x_m;
-        if (x_m >= limit_m) break;
-        const double metres = std::hypot(x_m, people[j].y_m - people[i].y_m);
+        // From whole cells, so that equal distances are equal wherever on the grid they are.
+        const double columns = people[j].column - people[i].column;
+        const double rows = people[j].row - people[i].row;
+        if (grid.cell_m * columns >= limit_m) break;
+        const double metres = grid.cell_m * std::sqrt(columns * columns + rows * rows);
         if (metres >= limit_m) continue;
         distances[std::minmax({people[i].path, people[j].path})].push_back(
             {.frame = frame, .metres = metres});

@@ -74,8 +74,7 @@ TEST(FindMeetings, AreThoseOfAllPairsAtAllFrames) {
     const GroundGrid grid = WalkGrid(draws.Int(2, 12));
     constexpr int kFrames = 80;
     const auto paths = RandomWalks(draws, grid, draws.Int(0, 8), kFrames);
-    // Up to 2.4 m, so that equal distances are equal offsets, up to sign and order.
-    const double distance_m = 0.3 + 0.3 * draws.Int(0, 7);
+    const double distance_m = 0.3 + 0.3 * draws.Int(0, 12);
     const int apart = draws.Int(1, 12);
     const auto meetings = FindMeetings(paths, grid, distance_m, apart);
     ASSERT_EQ(meetings, PlainMeetings(paths, grid, distance_m, apart, kFrames));
@@ -105,6 +104,20 @@ TEST(FindMeetings, FirstOfEquallyNearMomentsIsTheMeeting) {
   const std::vector<LinkedPath> paths = {Along(std::vector<int>(26, 2), 0), Along(comes, 0)};
   EXPECT_THAT(FindMeetings(paths, kGrid, 1.2, 5),
               ElementsAre(Meeting{.frame = 3, .first = 0, .second = 1}));
+}
+
+TEST(FindMeetings, DependOnTheCellsAndNotOnWhereTheGridLies) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    SCOPED_TRACE(seed);
+    Draws draws(seed);
+    const GroundGrid exact = WalkGrid(12);
+    const auto paths = RandomWalks(draws, exact, 6, 80);
+    // A fifth of a metre has no exact number, nor have the centres of cells here.
+    GroundGrid rounded = exact;
+    rounded.cell_m = 0.2;
+    rounded.min_x_m = 0.37;
+    EXPECT_EQ(FindMeetings(paths, rounded, 4.1 * 0.2, 5), FindMeetings(paths, exact, 4.1 * 0.5, 5));
+  }
 }
 
 TEST(FindMeetings, WhoWalkSideBySideMeetManyTimes) {
