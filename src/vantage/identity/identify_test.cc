@@ -132,6 +132,19 @@ TEST(IdentifyPeople, WhoAreRightStay) {
   EXPECT_THAT(result.report.exchanges, IsEmpty());
 }
 
+TEST(IdentifyPeople, ColoursBelongToWhoIsNearest) {
+  // The first two always stand side by side, within reach of each other's colours.
+  auto people = People();
+  for (std::int64_t frame = 0; frame < kFrames; ++frame) {
+    const int walked = static_cast<int>(std::clamp<std::int64_t>(frame - (kCrossing - 1), 0, 2));
+    people[0].cells[static_cast<std::size_t>(frame)] = 18 + walked + 40 * 5;
+    people[1].cells[static_cast<std::size_t>(frame)] = 20 - walked + 40 * 5;
+  }
+  const Appearances appearances = Seen(people);
+  EXPECT_EQ(Identify(people, appearances).paths, people);
+  EXPECT_EQ(Identify(Swapped(people), appearances).paths, people);
+}
+
 TEST(IdentifyPeople, WithoutColoursEverythingStays) {
   const auto swapped = Swapped(People());
   const Appearances appearances = Seen(People());
