@@ -66,11 +66,11 @@ PairDistances DistancesBelow(std::span<const LinkedPath> paths, const GroundGrid
   return distances;
 }
 
-/// True when nothing within `apart_frames` before `at` is as near, and nothing after it nearer.
+/// True when nothing within `apart_frames` of `at` is nearer.
 bool IsNearest(std::span<const Distance> distances, std::size_t at, std::int64_t apart_frames) {
   const Distance& here = distances[at];
   for (std::size_t i = at; i-- > 0 && here.frame - distances[i].frame <= apart_frames;) {
-    if (distances[i].metres <= here.metres) return false;
+    if (distances[i].metres < here.metres) return false;
   }
   for (std::size_t i = at + 1;
        i < distances.size() && distances[i].frame - here.frame <= apart_frames; ++i) {
@@ -87,10 +87,12 @@ std::vector<Meeting> FindMeetings(std::span<const LinkedPath> paths, const Groun
   for (const auto& [pair, distances] : DistancesBelow(paths, grid, distance_m)) {
     const auto [first, second] = pair;
     const std::int64_t both = std::max(paths[first].first_frame, paths[second].first_frame);
+    std::int64_t next = both + 1;  // no meeting before this frame
     for (std::size_t i = 0; i < distances.size(); ++i) {
-      if (distances[i].frame > both && IsNearest(distances, i, apart_frames)) {
-        meetings.push_back({.frame = distances[i].frame, .first = first, .second = second});
-      }
+      const std::int64_t frame = distances[i].frame;
+      if (frame < next || !IsNearest(distances, i, apart_frames)) continue;
+      meetings.push_back({.frame = frame, .first = first, .second = second});
+      next = frame + apart_frames + 1;
     }
   }
   std::ranges::stable_sort(meetings, {}, &Meeting::frame);

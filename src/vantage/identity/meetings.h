@@ -22,7 +22,8 @@ struct Meeting {
 
 /// The moments at which two paths are nearer than `distance_m` and nearest to each other of all
 /// moments within `apart_frames` (>= 1), in ascending order of frames, then of paths; never at the
-/// first frame of either. People who walk side by side meet many times.
+/// first frame of either. Of moments that are equally near, the first and those that come more than
+/// `apart_frames` after the last one that was taken: people who walk side by side meet many times.
 std::vector<Meeting> FindMeetings(std::span<const LinkedPath> paths, const GroundGrid& grid,
                                   double distance_m, std::int64_t apart_frames);
 
