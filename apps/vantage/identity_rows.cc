@@ -11,7 +11,7 @@ std::vector<ReportRow> IdentityRows(const IdentityReport& report) {
   if (!report.learnt) {
     return {{"identity", "too few people seen apart to tell them by colours"}};
   }
-  return {{"identity", fmt::format("{} of {} meetings decided by colours against linking",
+  return {{"identity", fmt::format("{} exchanges by colours at {} meetings",
                                    report.exchanges.size(), report.meetings)}};
 }
 

@@ -117,7 +117,7 @@ TEST_F(LinkIdentity, GivesTheTracksOfTheWholeWay) {
   for (const char* count : {"appearances", "meetings", "exchanges", "paths", "tracks"}) {
     EXPECT_EQ(report[count], counts[count]) << count;
   }
-  const std::string row = fmt::format("{} of {} meetings decided by colours against linking",
+  const std::string row = fmt::format("{} exchanges by colours at {} meetings",
                                       counts["exchanges"].dump(), counts["meetings"].dump());
   EXPECT_THAT(Link().out, HasSubstr(row));
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace vantage {
@@ -13,6 +14,10 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+// Two people who are exchanged and exchanged back meet at most so many times more in between. Who
+// walk side by side for an hour meet thousands of times, and pairs of those would be millions.
+constexpr std::size_t kMostBetween = 32;
 
 /// Observations put together.
 struct Sum {
@@ -38,6 +43,17 @@ struct Crossing {
   std::size_t second = 0;
   double gain = 0;
 };
+
+/// What may be done at once: an exchange at a crossing, or there and back at two of the same
+/// chains.
+struct Move {
+  std::size_t there = kNone;
+  std::size_t back = kNone;
+  double gain = 0;
+};
+
+/// The smaller number first.
+using ChainPair = std::pair<std::size_t, std::size_t>;
 
 class Chains {
  public:
@@ -82,27 +98,37 @@ class Chains {
     for (Crossing& crossing : crossings_) crossing.gain = Gain(crossing);
   }
 
-  /// The crossing whose exchange gains most; kNone without any.
-  std::size_t Best() const {
-    if (crossings_.empty()) return kNone;
-    return static_cast<std::size_t>(std::ranges::max_element(crossings_, {}, &Crossing::gain) -
-                                    crossings_.begin());
-  }
-  double gain(std::size_t crossing) const { return crossings_[crossing].gain; }
-
-  void ExchangeAt(std::size_t index) {
-    Tracklet& first = tracklets_[crossings_[index].first];
-    Tracklet& second = tracklets_[crossings_[index].second];
-    std::swap(first.next, second.next);
-    const std::array<std::size_t, 2> chains = {first.chain, second.chain};
-    for (const std::size_t chain : chains) SumUp(chain);
-    for (const std::size_t chain : chains) {
-      for (std::size_t i = first_of_path_[chain]; i != kNone; i = tracklets_[i].next) {
-        for (const std::size_t crossing : crossings_at_[i]) {
-          crossings_[crossing].gain = Gain(crossings_[crossing]);
-        }
-      }
+  /// The exchange that gains most; none gains 0.
+  Move BestExchange() const {
+    Move best;
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+      const double gain = crossings_[i].gain;
+      if (gain > best.gain) best = {.there = i, .gain = gain};
     }
+    return best;
+  }
+
+  /// The same of exchanges there and back, which gain where neither of the two does: without the
+  /// other it would leave everything after it, or before it, to the wrong person.
+  Move BestReturn() {
+    std::map<ChainPair, std::vector<std::size_t>> of_chains;
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+      const Crossing& crossing = crossings_[i];
+      of_chains[std::minmax(tracklets_[crossing.first].chain, tracklets_[crossing.second].chain)]
+          .push_back(i);
+    }
+    Move best;
+    for (const auto& [chains, crossings] : of_chains) {
+      const auto [known, is_new] = returns_.try_emplace(chains);
+      if (is_new) known->second = BestReturn(chains, crossings);
+      if (known->second.gain > best.gain) best = known->second;
+    }
+    return best;
+  }
+
+  void Make(const Move& move) {
+    ExchangeAt(move.there);
+    if (move.back != kNone) ExchangeAt(move.back);
   }
 
   std::vector<LinkedPath> Paths() const {
@@ -121,6 +147,38 @@ class Chains {
   }
 
  private:
+  void ExchangeAt(std::size_t index) {
+    Tracklet& first = tracklets_[crossings_[index].first];
+    Tracklet& second = tracklets_[crossings_[index].second];
+    std::swap(first.next, second.next);
+    const std::array<std::size_t, 2> chains = {first.chain, second.chain};
+    for (const std::size_t chain : chains) SumUp(chain);
+    std::erase_if(returns_, [&](const auto& known) {
+      const auto [a, b] = known.first;
+      return std::ranges::any_of(chains,
+                                 [&](std::size_t chain) { return chain == a || chain == b; });
+    });
+    for (const std::size_t chain : chains) {
+      for (std::size_t i = first_of_path_[chain]; i != kNone; i = tracklets_[i].next) {
+        for (const std::size_t crossing : crossings_at_[i]) {
+          crossings_[crossing].gain = Gain(crossings_[crossing]);
+        }
+      }
+    }
+  }
+
+  Move BestReturn(const ChainPair& chains, const std::vector<std::size_t>& crossings) const {
+    Move best;
+    for (std::size_t i = 0; i < crossings.size(); ++i) {
+      const std::size_t end = std::min(crossings.size(), i + kMostBetween + 2);
+      for (std::size_t j = i + 1; j < end; ++j) {
+        const double gain = ReturnGain(chains, crossings_[crossings[i]], crossings_[crossings[j]]);
+        if (gain > best.gain) best = {.there = crossings[i], .back = crossings[j], .gain = gain};
+      }
+    }
+    return best;
+  }
+
   void Append(std::size_t path, std::int64_t begin, std::int64_t end) {
     tracklets_.push_back(
         {.path = path, .begin = begin, .end = end, .seen = Nothing(), .until = Nothing()});
@@ -157,17 +215,35 @@ class Chains {
   double Gain(const Crossing& crossing) const {
     const Tracklet& first = tracklets_[crossing.first];
     const Tracklet& second = tracklets_[crossing.second];
-    const Sum& whole_first = totals_[first.chain];
-    const Sum& whole_second = totals_[second.chain];
-    const auto evidence = [&](const Sum& before, const Sum& other_whole, const Sum& other_before) {
-      return model_.Evidence(
-          before.projections + other_whole.projections - other_before.projections,
-          before.count + other_whole.count - other_before.count);
+    return GainOf(
+        first.chain, second.chain,
+        Less(Less(totals_[second.chain], second.until), Less(totals_[first.chain], first.until)));
+  }
+
+  /// `there` and `back` are crossings of both chains, in this order.
+  double ReturnGain(const ChainPair& chains, const Crossing& there, const Crossing& back) const {
+    const auto between = [&](std::size_t chain) {
+      const auto until = [&](const Crossing& crossing) -> const Sum& {
+        const Tracklet& tracklet = tracklets_[crossing.first];
+        return tracklet.chain == chain ? tracklet.until : tracklets_[crossing.second].until;
+      };
+      return Less(until(back), until(there));
     };
-    return evidence(first.until, whole_second, second.until) +
-           evidence(second.until, whole_first, first.until) -
-           model_.Evidence(whole_first.projections, whole_first.count) -
-           model_.Evidence(whole_second.projections, whole_second.count);
+    const auto [first, second] = chains;
+    return GainOf(first, second, Less(between(second), between(first)));
+  }
+
+  /// What the evidence gains when the first chain gets `moved` and the second loses it.
+  double GainOf(std::size_t first, std::size_t second, const Sum& moved) const {
+    const Sum& a = totals_[first];
+    const Sum& b = totals_[second];
+    return model_.Evidence(a.projections + moved.projections, a.count + moved.count) +
+           model_.Evidence(b.projections - moved.projections, b.count - moved.count) -
+           model_.Evidence(a.projections, a.count) - model_.Evidence(b.projections, b.count);
+  }
+
+  static Sum Less(const Sum& a, const Sum& b) {
+    return {.count = a.count - b.count, .projections = a.projections - b.projections};
   }
 
   std::span<const LinkedPath> paths_;
@@ -177,6 +253,7 @@ class Chains {
   std::vector<Crossing> crossings_;         // one for each meeting
   std::vector<std::vector<std::size_t>> crossings_at_;  // of a tracklet: those at its end
   std::vector<Sum> totals_;                             // of each chain
+  std::map<ChainPair, Move> returns_;                   // the best of two chains, if known
 };
 
 }  // namespace
@@ -191,11 +268,16 @@ Result<Exchanged> ExchangePaths(std::span<const LinkedPath> paths,
   }
   chains.Begin();
   Exchanged result;
-  for (std::size_t best = chains.Best(); best != kNone && chains.gain(best) >= margin;
-       best = chains.Best()) {
+  while (true) {
     if (control.Stopped()) return Cancelled();
-    result.exchanges.push_back({.meeting = meetings[best], .evidence = chains.gain(best)});
-    chains.ExchangeAt(best);
+    Move move = chains.BestExchange();
+    if (move.gain < margin) move = chains.BestReturn();
+    if (move.gain < margin) break;
+    Exchange& exchange = result.exchanges.emplace_back();
+    exchange.meeting = meetings[move.there];
+    if (move.back != kNone) exchange.back = meetings[move.back];
+    exchange.evidence = move.gain;
+    chains.Make(move);
   }
   result.paths = chains.Paths();
   return result;

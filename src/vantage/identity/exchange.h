@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct PathObservation {
 /// A meeting that two people leave as each other.
 struct Exchange {
   Meeting meeting;
+  /// A later one, at which they are exchanged back.
+  std::optional<Meeting> back = std::nullopt;
   /// How many times as likely the observations are with it than without, as a logarithm.
   double evidence = 0;
 };
@@ -39,8 +42,9 @@ struct Exchanged {
 /// Decides at each meeting who leaves it as whom: of all observations of all people the evidence
 /// that those put together are of one person (PersonModel::Evidence, each observation counting
 /// `weight` of an independent one) is maximised by exchanging what follows of two paths at a
-/// meeting, the best exchange first, until none is left that gains `margin` or more. Meetings are
-/// in ascending order of frames, as FindMeetings gives them.
+/// meeting, the best exchange first, until none is left that gains `margin` or more; then there and
+/// back at two meetings of the same people, in the same way, and so on until neither is left.
+/// Meetings are in ascending order of frames, as FindMeetings gives them.
 Result<Exchanged> ExchangePaths(std::span<const LinkedPath> paths,
                                 std::span<const Meeting> meetings, const PersonModel& model,
                                 std::span<const PathObservation> observations, double weight,

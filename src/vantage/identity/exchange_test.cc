@@ -41,19 +41,17 @@ class Plain {
     for (std::size_t i = 0; i < paths.size(); ++i) whose_.emplace_back(paths[i].cells.size(), i);
   }
 
+  /// The two people who come to the meeting.
+  std::set<std::size_t> Who(const Meeting& meeting) const {
+    return {Comer(meeting.first, meeting.frame), Comer(meeting.second, meeting.frame)};
+  }
+
   /// Those who came to the meeting along these two paths leave it as each other.
   void Exchange(const Meeting& meeting) {
-    const auto rest = [&](std::size_t path) {
-      for (std::size_t person = 0; person < whose_.size(); ++person) {
-        const std::int64_t step = meeting.frame - paths_[person].first_frame;
-        if (step < 1 || step > std::ssize(whose_[person])) continue;
-        if (whose_[person][static_cast<std::size_t>(step - 1)] != path) continue;
-        return std::pair(person, whose_[person].begin() + step);
-      }
-      throw std::logic_error("nobody comes to the meeting along this path");
-    };
-    const auto [a, from_a] = rest(meeting.first);
-    const auto [b, from_b] = rest(meeting.second);
+    const std::size_t a = Comer(meeting.first, meeting.frame);
+    const std::size_t b = Comer(meeting.second, meeting.frame);
+    const auto from_a = whose_[a].begin() + (meeting.frame - paths_[a].first_frame);
+    const auto from_b = whose_[b].begin() + (meeting.frame - paths_[b].first_frame);
     const std::vector<std::size_t> rest_of_a(from_a, whose_[a].end());
     const std::vector<std::size_t> rest_of_b(from_b, whose_[b].end());
     whose_[a].erase(from_a, whose_[a].end());
@@ -97,6 +95,16 @@ class Plain {
   }
 
  private:
+  /// Who comes to this frame along this path.
+  std::size_t Comer(std::size_t path, std::int64_t frame) const {
+    for (std::size_t person = 0; person < whose_.size(); ++person) {
+      const std::int64_t step = frame - paths_[person].first_frame;
+      if (step < 1 || step > std::ssize(whose_[person])) continue;
+      if (whose_[person][static_cast<std::size_t>(step - 1)] == path) return person;
+    }
+    throw std::logic_error("nobody comes to the meeting along this path");
+  }
+
   std::vector<LinkedPath> paths_;
   std::vector<std::vector<std::size_t>> whose_;
 };
@@ -162,7 +170,10 @@ TEST(ExchangePaths, CellsOfEveryFrameAndBeginsOfPathsStay) {
     EXPECT_EQ(CellsAt(result.paths), CellsAt(scene.paths));
     ASSERT_EQ(result.paths.size(), scene.paths.size());
     std::set<std::int64_t> exchanged_at;
-    for (const Exchange& exchange : result.exchanges) exchanged_at.insert(exchange.meeting.frame);
+    for (const Exchange& exchange : result.exchanges) {
+      exchanged_at.insert(exchange.meeting.frame);
+      if (exchange.back) exchanged_at.insert(exchange.back->frame);
+    }
     for (std::size_t i = 0; i < result.paths.size(); ++i) {
       const LinkedPath& path = result.paths[i];
       EXPECT_EQ(path.first_frame, scene.paths[i].first_frame);
@@ -179,6 +190,7 @@ TEST(ExchangePaths, CellsOfEveryFrameAndBeginsOfPathsStay) {
 
 TEST(ExchangePaths, EachIsTheBestOneAndItsEvidenceIsWhatItGains) {
   std::size_t exchanges = 0;
+  std::size_t returns = 0;
   std::size_t together = 0;  // three people at the same frame
   for (unsigned seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(seed);
@@ -191,20 +203,45 @@ TEST(ExchangePaths, EachIsTheBestOneAndItsEvidenceIsWhatItGains) {
       other.Exchange(meeting);
       return scene.Evidence(other) - before;
     };
-    double best = 0;
+    // There and back at any two meetings of the same two people.
+    const auto best_return = [&] {
+      double best = 0;
+      for (std::size_t i = 0; i < scene.meetings.size(); ++i) {
+        const auto people = plain.Who(scene.meetings[i]);
+        Plain other = plain;
+        other.Exchange(scene.meetings[i]);
+        int between = 0;
+        for (std::size_t j = i + 1; j < scene.meetings.size() && between <= 32; ++j) {
+          if (plain.Who(scene.meetings[j]) != people) continue;
+          ++between;
+          Plain returned = other;
+          returned.Exchange(scene.meetings[j]);
+          best = std::max(best, scene.Evidence(returned) - before);
+        }
+      }
+      return best;
+    };
     for (const Exchange& exchange : result.exchanges) {
-      best = 0;
+      double best = 0;
       for (const Meeting& meeting : scene.meetings) best = std::max(best, gain_at(meeting));
-      EXPECT_NEAR(exchange.evidence, gain_at(exchange.meeting), 1e-7);
+      if (exchange.back) {
+        ++returns;
+        EXPECT_LT(best, scene.margin + 1e-7);
+        best = best_return();
+      }
+      plain.Exchange(exchange.meeting);
+      if (exchange.back) plain.Exchange(*exchange.back);
+      const double after = scene.Evidence(plain);
+      EXPECT_NEAR(exchange.evidence, after - before, 1e-7);
       EXPECT_NEAR(exchange.evidence, best, 1e-7);
       EXPECT_GE(exchange.evidence, scene.margin);
-      plain.Exchange(exchange.meeting);
-      before = scene.Evidence(plain);
+      before = after;
     }
     EXPECT_EQ(plain.Paths(), result.paths);
     for (const Meeting& meeting : scene.meetings) {
       ASSERT_LT(gain_at(meeting), scene.margin + 1e-7) << "at frame " << meeting.frame;
     }
+    EXPECT_LT(best_return(), scene.margin + 1e-7);
     exchanges += result.exchanges.size();
     for (const Exchange& one : result.exchanges) {
       together += static_cast<std::size_t>(
@@ -217,6 +254,7 @@ TEST(ExchangePaths, EachIsTheBestOneAndItsEvidenceIsWhatItGains) {
     }
   }
   EXPECT_GT(exchanges, 400U);
+  EXPECT_GT(returns, 20U);
   EXPECT_GT(together, 10U);
 }
 
