@@ -56,7 +56,7 @@ struct CellsReport {
 };
 
 /// To be raised whenever equal inputs give other results than before, in a release or between two.
-inline constexpr int kResultsVersion = 2;
+inline constexpr int kResultsVersion = 3;
 
 /// Runs the cells whose results `folder` does not hold, first those that others need; `threads` of
 /// them side by side. A result is kept when it was made by this version of the program, from the

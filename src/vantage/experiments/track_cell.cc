@@ -123,6 +123,7 @@ Json InputsOf(const TrackRecording& recording, const TrackSetting& setting, bool
   Json inputs = {{"recording", recording.inputs},
                  {"cell_m", setting.cell_m ? Json(*setting.cell_m) : Json("scene")},
                  {"extension_m", setting.extension_m ? Json(*setting.extension_m) : Json("scene")},
+                 {"person", setting.person ? Recorded(*setting.person) : Json("scene")},
                  {"sparse_truth", recording.sparse_truth},
                  {"grid", Recorded(GridOptions())},
                  {"occupancy", Recorded(setting.options.occupancy)},
@@ -169,6 +170,11 @@ Result<Scene> SceneFor(const TrackRecording& recording, const TrackSetting& sett
   VANTAGE_ASSIGN_OR_RETURN(Scene scene, recording.scene(folder));
   if (setting.cell_m) scene.grid.cell_m = *setting.cell_m;
   if (setting.extension_m) scene.grid.extension_m = *setting.extension_m;
+  if (setting.person) {
+    scene.person = {.width_m = setting.person->width_m,
+                    .height_m = setting.person->height_m,
+                    .shape = setting.person->shape};
+  }
   if (!masks) return scene;
   for (SceneCamera& camera : scene.cameras) {
     camera.source = {.kind = SourceSpec::Kind::kMasks,

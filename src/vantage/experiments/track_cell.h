@@ -23,6 +23,7 @@ struct TrackSetting {
   /// In place of what the scene says.
   std::optional<double> cell_m = std::nullopt;
   std::optional<double> extension_m = std::nullopt;
+  std::optional<PersonOptions> person = std::nullopt;
 };
 
 /// The defaults. On reduced pictures, lengths and areas that the background stage counts in pixels
