@@ -61,8 +61,9 @@ void AddCharts(const Sweep& sweep, const std::vector<TrackRow>& rows, ReportPage
 Status Report(const Sweep& sweep, const CellResults& results, ReportPage& page,
               ExperimentReport& report) {
   page.Paragraph(
-      "Masks are the defaults', the same for all sizes; all else is at the defaults, but that nobody "
-      "is held in the foreground and nobody told apart by colours. The thesis shows its figures as a picture only and takes 0.5 m.");
+      "Masks are the defaults', the same for all sizes; all else is at the defaults, but that "
+      "nobody is held in the foreground and nobody told apart by colours. The thesis shows its "
+      "figures as a picture only and takes 0.5 m.");
   std::vector<TrackRow> rows;
   for (std::size_t i = 0; i < sweep.cells.size(); ++i) {
     rows.push_back({.name = fmt::format("{} m", sweep.sizes_m[i]),

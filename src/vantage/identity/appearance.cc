@@ -96,7 +96,7 @@ bool ColorsOf(const cv::Mat& picture, const cv::Mat& mask, const cv::Mat& open,
   for (int band = 0; band < kAppearanceBands; ++band) {
     const cv::Rect rows(0, row(band + 1), rectangle.width, row(band) - row(band + 1));
     any |= BandColor(lab(rows), mask(rectangle)(rows), open(rectangle)(rows),
-                     std::span(colors).subspan(static_cast<std::size_t>(3 * band), 3));
+                     std::span(colors).subspan(3 * static_cast<std::size_t>(band), 3));
   }
   return any;
 }

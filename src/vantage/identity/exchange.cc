@@ -68,7 +68,7 @@ class Chains {
     first_of_path_.reserve(paths.size());
     for (std::size_t i = 0; i < paths.size(); ++i) {
       first_of_path_.push_back(tracklets_.size());
-      cuts[i].erase(std::ranges::unique(cuts[i]).begin(), cuts[i].end());
+      cuts[i].erase(std::unique(cuts[i].begin(), cuts[i].end()), cuts[i].end());
       std::int64_t begin = paths[i].first_frame;
       for (const std::int64_t cut : cuts[i]) {
         Append(i, begin, cut);
@@ -154,9 +154,8 @@ class Chains {
     const std::array<std::size_t, 2> chains = {first.chain, second.chain};
     for (const std::size_t chain : chains) SumUp(chain);
     std::erase_if(returns_, [&](const auto& known) {
-      const auto [a, b] = known.first;
-      return std::ranges::any_of(chains,
-                                 [&](std::size_t chain) { return chain == a || chain == b; });
+      return std::ranges::find(chains, known.first.first) != chains.end() ||
+             std::ranges::find(chains, known.first.second) != chains.end();
     });
     for (const std::size_t chain : chains) {
       for (std::size_t i = first_of_path_[chain]; i != kNone; i = tracklets_[i].next) {
