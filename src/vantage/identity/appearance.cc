@@ -51,6 +51,19 @@ std::vector<Figure> FiguresIn(const Camera& camera, const PersonOptions& person,
   return figures;
 }
 
+/// CV_8UC1 of the figure's rectangle: 255 where no rectangle of `nearer` figures covers it and the
+/// camera's pixels are informative (as in CameraView).
+cv::Mat OpenPixels(const cv::Rect& rectangle, std::span<const Figure> nearer,
+                   const cv::Mat& informative) {
+  cv::Mat open = informative.empty() ? cv::Mat(rectangle.size(), CV_8UC1, cv::Scalar(255))
+                                     : informative(rectangle).clone();
+  for (const Figure& figure : nearer) {
+    const cv::Rect hidden = figure.rectangle & rectangle;
+    if (!hidden.empty()) open(hidden - rectangle.tl()).setTo(0);
+  }
+  return open;
+}
+
 /// Median of each channel of `lab` where both masks are set; false when it cannot be told.
 bool BandColor(const cv::Mat& lab, const cv::Mat& mask, const cv::Mat& open,
                std::span<float> color) {
@@ -82,20 +95,19 @@ bool BandColor(const cv::Mat& lab, const cv::Mat& mask, const cv::Mat& open,
   return true;
 }
 
-/// The bands of a figure; false when none can be told.
+/// The bands of a figure, whose rectangle all three show; false when none can be told.
 bool ColorsOf(const cv::Mat& picture, const cv::Mat& mask, const cv::Mat& open,
-              const cv::Rect& rectangle, BandColors& colors) {
+              BandColors& colors) {
   colors.fill(kMissing);
   cv::Mat lab;
-  cv::cvtColor(picture(rectangle), lab, cv::COLOR_BGR2Lab);
+  cv::cvtColor(picture, lab, cv::COLOR_BGR2Lab);
   const auto row = [&](int band) {  // where a band begins, from the feet
-    return static_cast<int>(
-        std::lround(rectangle.height * (1 - double{1} * band / kAppearanceBands)));
+    return static_cast<int>(std::lround(lab.rows * (1 - double{1} * band / kAppearanceBands)));
   };
   bool any = false;
   for (int band = 0; band < kAppearanceBands; ++band) {
-    const cv::Rect rows(0, row(band + 1), rectangle.width, row(band) - row(band + 1));
-    any |= BandColor(lab(rows), mask(rectangle)(rows), open(rectangle)(rows),
+    const cv::Range rows(row(band + 1), row(band));
+    any |= BandColor(lab.rowRange(rows), mask.rowRange(rows), open.rowRange(rows),
                      std::span(colors).subspan(3 * static_cast<std::size_t>(band), 3));
   }
   return any;
@@ -112,16 +124,16 @@ void AppearanceSampler::Look(std::int64_t frame, std::span<const cv::Mat> pictur
   for (std::size_t camera = 0; camera < views_.size(); ++camera) {
     if (pictures[camera].empty() || masks[camera].empty()) continue;
     const View& view = views_[camera];
-    cv::Mat open = view.informative.empty()
-                       ? cv::Mat(pictures[camera].size(), CV_8UC1, cv::Scalar(255))
-                       : view.informative.clone();
-    for (const Figure& figure : FiguresIn(view.camera, person_, people)) {
-      Appearance seen{.frame = frame, .cell = figure.cell, .camera = static_cast<int>(camera)};
-      if (figure.cell >= 0 &&
-          ColorsOf(pictures[camera], masks[camera], open, figure.rectangle, seen.colors)) {
+    const std::vector<Figure> figures = FiguresIn(view.camera, person_, people);
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+      const auto& [distance_m, rectangle, cell] = figures[i];
+      if (cell < 0) continue;
+      Appearance seen{.frame = frame, .cell = cell, .camera = static_cast<int>(camera)};
+      if (ColorsOf(pictures[camera](rectangle), masks[camera](rectangle),
+                   OpenPixels(rectangle, std::span(figures).first(i), view.informative),
+                   seen.colors)) {
         appearances.push_back(seen);
       }
-      open(figure.rectangle).setTo(0);
     }
   }
 }
