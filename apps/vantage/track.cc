@@ -90,7 +90,6 @@ void PrintReport(const Scene& scene, const TrackingResult& result) {
   rows.push_back({"maps", rate(maps.wall_secs)});
   rows.push_back({"linking", rate(result.report.linking.linking.seconds)});
   const double recorded_secs = static_cast<double>(maps.frames) / scene.frames_per_second;
-  rows.push_back({"identity", fmt::format("{:.2f} s", result.report.identity.seconds)});
   rows.push_back({"total", fmt::format("{}, {:.2f} x real time", rate(result.report.total_secs),
                                        recorded_secs / result.report.total_secs)});
   PrintTable(rows);
