@@ -34,7 +34,6 @@ constexpr double kMinFramesPerSecond = 1e-6;
 constexpr double kMaxFramesPerSecond = 1e6;
 
 constexpr hsize_t kChunkEntries = 4096;
-constexpr unsigned kDeflateLevel = 4;
 
 /// A dataset of the group, and where its values are in an Appearance.
 struct Column {
@@ -75,12 +74,9 @@ bool WriteColumn(hid_t file, const Column& column, const Appearances& appearance
   const std::array size = {entries, column.width};
   const std::array chunk = {std::min(entries, kChunkEntries), column.width};
   const Space space(H5Screate_simple(column.rank(), size.data(), nullptr));
-  const Properties layout(H5Pcreate(H5P_DATASET_CREATE));
-  if (H5Pset_obj_track_times(layout.get(), false) < 0 ||
-      H5Pset_chunk(layout.get(), column.rank(), chunk.data()) < 0 ||
-      H5Pset_shuffle(layout.get()) < 0 || H5Pset_deflate(layout.get(), kDeflateLevel) < 0) {
-    return false;
-  }
+  const Properties layout =
+      hdf5::CompressedProperties(std::span(chunk).first(static_cast<std::size_t>(column.rank())));
+  if (!layout.valid()) return false;
   Dataset dataset(H5Dcreate2(file, column.name, column.file_type, space.get(), H5P_DEFAULT,
                              layout.get(), H5P_DEFAULT));
   return dataset.valid() &&

@@ -5,6 +5,7 @@
 #include <hdf5.h>
 
 #include <mutex>
+#include <span>
 #include <utility>
 
 /// Internal to the library: HDF5's identifiers as values that close themselves.
@@ -56,5 +57,23 @@ using Space = Handle<H5Sclose>;
 using Type = Handle<H5Tclose>;
 using Attribute = Handle<H5Aclose>;
 using Properties = Handle<H5Pclose>;
+
+/// Properties of a new dataset without the time of its making: equal content gives equal bytes.
+inline Properties DatasetProperties() {
+  Properties properties(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_obj_track_times(properties.get(), false);
+  return properties;
+}
+
+/// The same of one that is stored compressed, in chunks of this size. Not valid when HDF5 fails.
+inline Properties CompressedProperties(std::span<const hsize_t> chunk) {
+  constexpr unsigned kDeflateLevel = 4;
+  Properties properties = DatasetProperties();
+  if (H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()) < 0 ||
+      H5Pset_shuffle(properties.get()) < 0 || H5Pset_deflate(properties.get(), kDeflateLevel) < 0) {
+    properties.Close();
+  }
+  return properties;
+}
 
 }  // namespace vantage::hdf5

@@ -22,8 +22,6 @@ using hdf5::Properties;
 using hdf5::QuietErrors;
 using hdf5::Space;
 
-constexpr unsigned kDeflateLevel = 4;
-
 template <class T>
 bool WriteAttribute(hid_t object, const char* name, hid_t type, T value) {
   const Space scalar(H5Screate(H5S_SCALAR));
@@ -31,18 +29,11 @@ bool WriteAttribute(hid_t object, const char* name, hid_t type, T value) {
   return attribute.valid() && H5Awrite(attribute.get(), type, &value) >= 0;
 }
 
-/// Properties of a new dataset without the time of its making: equal maps give equal bytes.
-Properties DatasetProperties() {
-  Properties properties(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_obj_track_times(properties.get(), false);
-  return properties;
-}
-
 bool WriteFlags(hid_t file, const char* name, const GroundGrid& grid,
                 const std::vector<std::uint8_t>& flags) {
   const std::array size = {static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)};
   const Space space(H5Screate_simple(2, size.data(), nullptr));
-  const Properties properties = DatasetProperties();
+  const Properties properties = hdf5::DatasetProperties();
   const Dataset dataset(H5Dcreate2(file, name, H5T_STD_U8LE, space.get(), H5P_DEFAULT,
                                    properties.get(), H5P_DEFAULT));
   return dataset.valid() && H5Dwrite(dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -58,11 +49,8 @@ bool WriteContent(const fs::path& path, const OccupancyMaps& maps) {
   const std::array max_size = {static_cast<hsize_t>(H5S_UNLIMITED), rows, columns};
   const std::array chunk = {hsize_t{1}, rows, columns};
   const Space space(H5Screate_simple(3, size.data(), max_size.data()));
-  const Properties layout = DatasetProperties();
-  if (H5Pset_chunk(layout.get(), 3, chunk.data()) < 0 || H5Pset_shuffle(layout.get()) < 0 ||
-      H5Pset_deflate(layout.get(), kDeflateLevel) < 0) {
-    return false;
-  }
+  const Properties layout = hdf5::CompressedProperties(chunk);
+  if (!layout.valid()) return false;
   Dataset dataset(H5Dcreate2(file.get(), "/occupancy", H5T_IEEE_F32LE, space.get(), H5P_DEFAULT,
                              layout.get(), H5P_DEFAULT));
   return dataset.valid() &&
