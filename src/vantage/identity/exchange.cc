@@ -75,7 +75,7 @@ class Chains {
         tracklets_.back().next = tracklets_.size();
         begin = cut;
       }
-      Append(i, begin, paths[i].first_frame + std::ssize(paths[i].cells));
+      Append(i, begin, paths[i].end_frame());
     }
     for (const Meeting& meeting : meetings) {
       crossings_.push_back({.first = TrackletAt(meeting.first, meeting.frame - 1),

@@ -22,7 +22,7 @@ PairDistances DistancesBelow(std::span<const LinkedPath> paths, const GroundGrid
                              double limit_m) {
   std::int64_t end = 0;
   for (const LinkedPath& path : paths) {
-    end = std::max(end, path.first_frame + std::ssize(path.cells));
+    end = std::max(end, path.end_frame());
   }
   struct Standing {
     int column = 0;
@@ -42,9 +42,7 @@ PairDistances DistancesBelow(std::span<const LinkedPath> paths, const GroundGrid
       waiting.pop_back();
     }
     people.clear();
-    std::erase_if(present, [&](std::size_t i) {
-      return paths[i].first_frame + std::ssize(paths[i].cells) <= frame;
-    });
+    std::erase_if(present, [&](std::size_t i) { return paths[i].end_frame() <= frame; });
     for (const std::size_t i : present) {
       const CellIndex cell = paths[i].cells[static_cast<std::size_t>(frame - paths[i].first_frame)];
       people.push_back({.column = grid.Column(cell), .row = grid.Row(cell), .path = i});

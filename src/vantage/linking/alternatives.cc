@@ -19,7 +19,7 @@ double FromUnits(Cost cost) { return static_cast<double>(cost) / linking::kUnits
 PathInStretch Within(const LinkedPath& path, const Stretch& stretch,
                      const linking::ResidualNetwork& network) {
   PathInStretch part;
-  const std::int64_t path_end = path.first_frame + std::ssize(path.cells);
+  const std::int64_t path_end = path.end_frame();
   part.first_frame = std::max(path.first_frame, stretch.first_frame);
   const std::int64_t end = std::min(path_end, stretch.last_frame + 1);
   Cost cost = 0;
@@ -44,8 +44,7 @@ std::optional<WeakStep> WeakestStep(const LinkedPath& path, const Stretch& stret
   std::optional<WeakStep> weakest;
   Cost lowest = std::numeric_limits<Cost>::max() / 2;
   const std::int64_t begin = std::max({path.first_frame, stretch.first_frame - 1, first});
-  const std::int64_t end =
-      std::min({path.first_frame + std::ssize(path.cells) - 1, stretch.last_frame + 1, last});
+  const std::int64_t end = std::min({path.end_frame() - 1, stretch.last_frame + 1, last});
   for (std::int64_t frame = begin; frame < end; ++frame) {
     const auto step = static_cast<std::size_t>(frame - path.first_frame);
     const CellIndex from = path.cells[step];
@@ -83,8 +82,7 @@ Result<Alternatives> Find(const LinkingProblem& problem, const LinkingOptions& o
   for (std::size_t i = 0; i < optimum.size(); ++i) {
     if (control.Stopped()) return Cancelled();
     const LinkedPath& path = optimum[i];
-    if (path.first_frame > stretch.last_frame ||
-        path.first_frame + std::ssize(path.cells) <= stretch.first_frame) {
+    if (path.first_frame > stretch.last_frame || path.end_frame() <= stretch.first_frame) {
       continue;
     }
     const auto weakest = WeakestStep(path, stretch, first, last, network);

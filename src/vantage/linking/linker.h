@@ -78,6 +78,9 @@ struct LinkingProblem {
 struct LinkedPath {
   std::int64_t first_frame = 0;
   std::vector<CellIndex> cells;
+
+  /// The frame after its last one.
+  std::int64_t end_frame() const { return first_frame + static_cast<std::int64_t>(cells.size()); }
   friend bool operator==(const LinkedPath&, const LinkedPath&) = default;
 };
 

@@ -79,7 +79,7 @@ Status ResidualNetwork::Occupy(const std::vector<LinkedPath>& paths) {
   previous_.assign(node_count(), kFree);
   for (const LinkedPath& path : paths) {
     const std::int64_t begin = std::max(path.first_frame, first_);
-    const std::int64_t end = std::min(path.first_frame + std::ssize(path.cells), first_ + frames_);
+    const std::int64_t end = std::min(path.end_frame(), first_ + frames_);
     for (std::int64_t frame = begin; frame < end; ++frame) {
       VANTAGE_RETURN_IF_ERROR(OccupyStep(path, frame - path.first_frame));
     }

@@ -65,8 +65,7 @@ std::vector<LinkedPath> PathsOf(const std::vector<StreamFrame>& frames) {
     for (const StreamPosition& position : frames[i].positions) {
       LinkedPath& path = by_id[position.path];
       if (path.cells.empty()) path.first_frame = frames[i].frame;
-      EXPECT_EQ(path.first_frame + std::ssize(path.cells), frames[i].frame)
-          << "path " << position.path << " has a gap";
+      EXPECT_EQ(path.end_frame(), frames[i].frame) << "path " << position.path << " has a gap";
       path.cells.push_back(position.cell);
     }
   }

@@ -117,7 +117,7 @@ std::int64_t CheckPaths(const Instance& instance, const std::vector<LinkedPath>&
     EXPECT_LT(previous, begin) << "not in order";
     previous = begin;
     const auto entry = EdgeUnits(instance, path.cells.front(), path.first_frame == 0);
-    const std::int64_t end = path.first_frame + std::ssize(path.cells);
+    const std::int64_t end = path.end_frame();
     EXPECT_LE(end, instance.frames);
     const auto exit = EdgeUnits(instance, path.cells.back(), end == instance.frames);
     EXPECT_TRUE(entry && exit);

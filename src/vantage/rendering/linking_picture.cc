@@ -138,7 +138,7 @@ void LinkingPicture::DrawPath(cv::Mat& plan, std::size_t path, std::int64_t firs
                               std::int64_t last) const {
   const LinkedPath& linked = paths_[path];
   const cv::Scalar color = ColorOfPath(path);
-  const std::int64_t path_last = linked.first_frame + std::ssize(linked.cells) - 1;
+  const std::int64_t path_last = linked.end_frame() - 1;
   const std::int64_t begin = std::max(first, linked.first_frame);
   const std::int64_t end = std::min(last, path_last);
   const auto cell_at = [&](std::int64_t frame) {
