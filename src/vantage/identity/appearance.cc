@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <utility>
 
 namespace vantage {
@@ -21,12 +22,11 @@ constexpr auto kMissing = std::numeric_limits<float>::quiet_NaN();
 /// A person in one view.
 struct Figure {
   double distance_m = 0;
-  cv::Rect rectangle;
-  CellIndex cell = 0;
+  cv::Rect rectangle;             ///< as far as it is in the picture
+  std::optional<CellIndex> cell;  ///< none: partly outside, only hides others
 };
 
-/// The people whose rectangle is wholly in the picture, the nearest first; those who are partly
-/// outside hide others, too, and have an empty cell of -1.
+/// The people who are in the picture at least in part, the nearest first.
 std::vector<Figure> FiguresIn(const Camera& camera, const PersonOptions& person,
                               std::span<const Peak> people) {
   const cv::Rect picture(0, 0, camera.size().width, camera.size().height);
@@ -45,7 +45,7 @@ std::vector<Figure> FiguresIn(const Camera& camera, const PersonOptions& person,
     const Eigen::Vector3d foot_m(peak.position_m.x(), peak.position_m.y(), 0);
     figures.push_back({.distance_m = (foot_m - camera.center_m()).norm(),
                        .rectangle = inside,
-                       .cell = inside == whole ? peak.cell : -1});
+                       .cell = inside == whole ? std::optional(peak.cell) : std::nullopt});
   }
   std::ranges::stable_sort(figures, {}, &Figure::distance_m);
   return figures;
@@ -127,8 +127,8 @@ void AppearanceSampler::Look(std::int64_t frame, std::span<const cv::Mat> pictur
     const std::vector<Figure> figures = FiguresIn(view.camera, person_, people);
     for (std::size_t i = 0; i < figures.size(); ++i) {
       const auto& [distance_m, rectangle, cell] = figures[i];
-      if (cell < 0) continue;
-      Appearance seen{.frame = frame, .cell = cell, .camera = static_cast<int>(camera)};
+      if (!cell) continue;
+      Appearance seen{.frame = frame, .cell = *cell, .camera = static_cast<int>(camera)};
       if (ColorsOf(pictures[camera](rectangle), masks[camera](rectangle),
                    OpenPixels(rectangle, std::span(figures).first(i), view.informative),
                    seen.colors)) {

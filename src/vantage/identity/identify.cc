@@ -70,13 +70,13 @@ std::vector<BandColors> UsualColors(const Appearances& appearances) {
 }
 
 /// The means over cameras of what is known, 0 where nothing is.
-VectorXd MeanColors(std::span<const Appearance> seen, const std::vector<BandColors>& usual) {
+VectorXd MeanColors(std::span<const Appearance* const> seen, const std::vector<BandColors>& usual) {
   VectorXd colors = VectorXd::Zero(kColors);
   for (Index i = 0; i < kColors; ++i) {
     const auto at = static_cast<std::size_t>(i);
     int known = 0;
-    for (const Appearance& one : seen) {
-      const float value = one.colors[at] - usual[static_cast<std::size_t>(one.camera)][at];
+    for (const Appearance* one : seen) {
+      const float value = one->colors[at] - usual[static_cast<std::size_t>(one->camera)][at];
       if (std::isnan(value)) continue;
       colors[i] += value;
       ++known;
@@ -89,8 +89,8 @@ VectorXd MeanColors(std::span<const Appearance> seen, const std::vector<BandColo
 /// In ascending order of frames.
 std::vector<Sight> SightsOf(const Appearances& appearances) {
   const std::vector<BandColors> usual = UsualColors(appearances);
-  std::map<std::pair<std::int64_t, CellIndex>, Appearances> together;
-  for (const Appearance& seen : appearances) together[{seen.frame, seen.cell}].push_back(seen);
+  std::map<std::pair<std::int64_t, CellIndex>, std::vector<const Appearance*>> together;
+  for (const Appearance& seen : appearances) together[{seen.frame, seen.cell}].push_back(&seen);
   std::vector<Sight> sights;
   for (const auto& [at, seen] : together) {
     sights.push_back({.frame = at.first, .cell = at.second, .colors = MeanColors(seen, usual)});
